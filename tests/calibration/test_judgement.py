@@ -35,6 +35,7 @@ from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 from calibration.discovery.search import AcceptedEffect
+from calibration.discovery.selection.joint_search import JointSearch
 from calibration.discovery.selection.verified_search import VerifiedSearch
 from calibration.discovery.study import Study
 from calibration.results.refusal_sentences import describe_refusal
@@ -372,6 +373,54 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
     found = search.verify(state(""), state("abc"))
     assert "".join(sorted(one.name for one in found.chosen)) == kept
     assert tried == passes and set(search.rejected) == set("abc") - set(kept)
+
+
+@pytest.mark.parametrize(
+    ("selected", "kept"),
+    [
+        (["a", "ab", "ab"], "ab"),  # the set stays
+        (["ab", "ac", "ab"], "ab"),  # two sets in turn: what two of three have
+        (["ab", "ac", "ad", "ae", "af", "ag"], "a"),  # the last round: what all have
+        (["a", ""], "a"),  # nothing at all: verification decides
+    ],
+)
+def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(selected, kept):
+    class Effect(NamedTuple):
+        name: str
+
+    @dataclass(frozen=True)
+    class State:
+        chosen: tuple[Effect, ...]
+
+    names, rounds = "abcdefg", iter(selected)
+
+    def subset(chosen: str) -> Any:
+        return SimpleNamespace(variants=tuple(names.index(name) for name in chosen), evidence=float(len(chosen)))
+
+    class Scripted(JointSearch):
+        def __init__(self) -> None:
+            self.columns = SimpleNamespace(variants=[Effect(name) for name in names])
+            fitted = {one.variants: one for one in map(subset, [*selected, *names])}
+            self.selector = SimpleNamespace(fitted=fitted, subset=lambda some: subset("".join(names[i] for i in some)))
+
+        def with_split_modes(self, baseline):
+            return None
+
+        def select(self, state, number):
+            return subset(next(rounds))
+
+        def fit_subset(self, state, columns, one, stage, share):
+            return State(tuple(Effect(names[i]) for i in one.variants))
+
+        def as_predicted(self, state, one):
+            return False
+
+        def refit_all(self, state):
+            return state
+
+    states: Any = [State(())]
+    found = Scripted().search(states, states.append)
+    assert "".join(one.name for one in found.chosen) == kept and next(rounds, None) is None
 
 
 def test_gain_in_waves_is_where_an_effect_acts():

@@ -13,7 +13,7 @@ from calibration.discovery.acceptance import (
 )
 from calibration.discovery.broyden_fit import far_step
 from calibration.discovery.diagnosis import Score
-from calibration.discovery.effect_fits import ReportStage
+from calibration.discovery.effect_fits import FINAL_RELINEARISATIONS, ReportStage
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from calibration.discovery.fit_state import FitState, ResidualSummary
@@ -154,10 +154,22 @@ class JointSearch(Search):
         predicted = minus_two_log_likelihood(self.study, self.columns.model.residual_after(subset.fit))
         return abs(float((state.likelihood - predicted)[self.study.used].sum())) < MIN_BIC_GAIN
 
+    def majority(self, sets: Sequence[frozenset[str]]) -> Subset:
+        """The effects that more than half of some sets have, with the shapes that they have in the most probable subset.
+
+        Args:
+            sets: Names of effects by set.
+        """
+        names = {name for name in frozenset().union(*sets) if 2 * sum(name in one for one in sets) > len(sets)}
+        variants: dict[str, int] = {}
+        for subset in sorted(self.selector.fitted.values(), key=lambda one: one.evidence):
+            variants |= {name: i for i in subset.variants if (name := self.columns.variants[i].name) in names}
+        return self.selector.subset(sorted(variants.values()))
+
     def refit_all(self, state: FitState) -> FitState:
         """Fit a state to convergence with slopes of its own, the shapes of its effects free."""
         look = self.study.linearise(state.look.place, self.active(state.chosen))
-        return self.refit(look, state.chosen, "final fit of all parameters", END)
+        return self.refit(look, state.chosen, "final fit of all parameters", END, FINAL_RELINEARISATIONS)
 
     def search(self, states: list[FitState], reach: Callable[[FitState], None]) -> FitState:
         """Select and move until the selection stays.
@@ -175,7 +187,11 @@ class JointSearch(Search):
         for number in range(len(states), MAX_ROUNDS + 1):
             best = self.select(state, number)
             names = frozenset(self.columns.variants[i].name for i in best.variants)
-            if names in visited or number == MAX_ROUNDS:
+            if not names or names == {one.name for one in state.chosen}:
+                break
+            if names in visited or number == MAX_ROUNDS:  # sets alternate: none is the answer
+                sets = [*(frozenset(one.name for one in some.chosen) for some in states[1:]), names]
+                state = self.fit_subset(state, self.columns, self.majority(sets), f"round {number}", self.share(number))
                 break
             visited.add(names)
             before, state = state, self.fit_subset(state, self.columns, best, f"round {number}", self.share(number - 0.5))
