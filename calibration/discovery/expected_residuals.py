@@ -3,9 +3,9 @@
 A missing force F leaves a residual H F, which is largest at resonance. With equal weights, least squares reduces it by damping
 slow motion away. Weighed by what an unknown force leaves, a resonance counts as the few frequencies that it is.
 
-    P_i = sum over j of |H_ij|^2 S_j + floor_i^2,    H = (-omega^2 M + i omega C + K)^-1
+    P_i = sum over j of |H_ij|^2 S_j + floor_i^2,    H = (-omega^2 + i omega C + K)^-1
 
-M, C and K are mean tangents of the model's forces along its motion in that sea. S_j is the spectrum of the missing force,
+C and K are mean tangents of the model's accelerations along its motion in that sea: forces count per unit of mass. S_j is the spectrum of the missing force,
 constant below the wave frequencies, and in every band among them. It is estimated from F = H^-1 r, less the floor's part; lines
 that are mostly floor count less. Motions that were not measured, and loads' memories, stay at rest.
 

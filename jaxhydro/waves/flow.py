@@ -75,7 +75,7 @@ class StripFlow(eqx.Module):
 
 
 class EndFlow(eqx.Module):
-    """Flow past the ends of columns along their axes.
+    """Flow past the ends of columns and pontoons along their axes.
 
     Attributes:
         relative: Velocity of the water relative to the end (m/s), (m,).

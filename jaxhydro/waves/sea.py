@@ -113,7 +113,7 @@ class WaveSea(AbstractSea):
 
     - "vertical": those of z = 0;
     - "extrapolation": those of z = 0 and their slope;
-    - "wheeler": the profile moved with the surface, z' = h (z - eta) / (h + eta);
+    - "wheeler": the profile moved with the surface, z' = h (z - eta) / (h + eta), 0 at most;
     - "none": as "vertical", and the platform is wetted up to still water level.
 
     Attributes:

@@ -24,8 +24,8 @@ class SpeedPowerLaw(AbstractDragLaw):
 
     ((u^2 + e^2)/(U0^2 + e^2))^(n/2) |u| u on strips and ends, u the water's relative velocity.
 
-    One exponent n for each group, n = 0 is `ConstantLaw` exactly. Cd is that at the `speed` U0; e = 0.02 m/s keeps it bounded
-    at rest. |u| is that of the vector, or with `coupled=False` of the component, in the power, too.
+    One exponent n for each group, n = 0 is `ConstantLaw` exactly. Cd is that at the `speed` U0; e = 0.04 U0 keeps it
+    bounded at rest. |u| is that of the vector, or with `coupled=False` of the component, in the power, too.
 
     A drag coefficient that goes as a power of the amplitude at a given period is one that goes as the same power of the
     Keulegan-Carpenter number (Keulegan and Carpenter 1958, J. Res. Nat. Bur. Standards 60, 423-440; n = -1/3 at a sharp
