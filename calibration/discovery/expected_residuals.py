@@ -5,9 +5,10 @@ slow motion away. Weighed by what an unknown force leaves, a resonance counts as
 
     P_i = sum over j of |H_ij|^2 S_j + floor_i^2,    H = (-omega^2 + i omega C + K)^-1
 
-C and K are mean tangents of the model's accelerations along its motion in that sea: forces count per unit of mass. S_j is the spectrum of the missing force,
-constant below the wave frequencies, and in every band among them. It is estimated from F = H^-1 r, less the floor's part; lines
-that are mostly floor count less. Motions that were not measured, and loads' memories, stay at rest.
+C and K are mean tangents of the model's accelerations along its motion in that sea: forces count per unit of mass. S_j is the
+spectrum of the missing force, constant below the wave frequencies, and in every band among them. It is estimated from F = H^-1
+r, less the floor's part; lines that are mostly floor count less. Motions that were not measured, and loads' memories, stay at
+rest.
 
 References:
     Ljung 1999, System Identification, 2nd ed., section 3.2: prediction errors filtered by the inverse disturbance model.
