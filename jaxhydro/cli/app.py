@@ -112,7 +112,7 @@ def simulate(
             autocompletion=options.platforms_like,
         ),
     ],
-    out: arguments.Out,
+    out: arguments.Out = None,
     hs: arguments.Hs = None,
     tp: arguments.Tp = None,
     gamma: arguments.Gamma = None,
@@ -165,7 +165,7 @@ def simulate(
     duration = sea_options.duration(duration, sea)
     dt = options.interval(dt, "--dt", duration)
     step = None if step is None else options.interval(step, "--step", duration)
-    out = options.results_folder(out, "motion.csv")
+    out = options.results_folder(out, "motion.csv", platform)
     from jaxhydro.cli import sea_command
     from jaxhydro.cli import simulate_command as command
 
@@ -220,7 +220,7 @@ def check(
 @app.command(epilog=arguments.FITTING)
 def calibrate(
     campaign: arguments.Campaign,
-    out: arguments.Out,
+    out: arguments.Out = None,
     figures: arguments.Figures = True,
     tests: arguments.Tests = None,
     objective: arguments.Aim = arguments.Objective.bands,
@@ -245,7 +245,7 @@ def calibrate(
 @app.command(epilog=arguments.DIAGNOSING)
 def diagnose(
     campaign: arguments.Campaign,
-    out: arguments.Out,
+    out: arguments.Out = None,
     figures: arguments.Figures = True,
 ) -> None:
     """Fit a platform's coefficients, then find what the model lacks: an effect with its name, its size and the evidence.
@@ -255,7 +255,7 @@ def diagnose(
     it; where there are none, blocks of the fitted ones are left out in turn. Nothing in the campaign has to name an effect. The
     answer may be that nothing is missing, or that something is and none of the known effects explains it.
     """
-    out = options.results_folder(out, "diagnosis.json")
+    out = options.results_folder(out, "diagnosis.json", campaign)
     from calibration.commands.diagnose_command import diagnose_campaign
 
     if not diagnose_campaign(campaign, out, figures):
@@ -266,7 +266,7 @@ def diagnose(
 def uncertainty(
     campaign: arguments.Campaign,
     calibration: arguments.Finished,
-    out: arguments.Out,
+    out: arguments.Out = None,
     profiles: arguments.Profiled = None,
     bootstrap: arguments.Resamplings = None,
     nuts: arguments.Nuts = False,
@@ -279,7 +279,7 @@ def uncertainty(
     What is left of a fit is mostly the model's own error, and lasts from sample to sample: it is coloured. Intervals of the
     fit's covariance allow for it; on request also profiles of the likelihood, a bootstrap, and draws from the posterior.
     """
-    out = options.results_folder(out, "uncertainty.json")
+    out = options.results_folder(out, "uncertainty.json", campaign)
     from calibration.commands.uncertainty_command import quantify
 
     how: dict[str, Any] = {"draws": bootstrap, "nuts": nuts, "level": level, "seed": seed, "figures": figures}
@@ -314,7 +314,7 @@ def demo(out: Annotated[Path, typer.Option("--out", help=arguments.OUT)] = Path(
 @app.command(epilog=arguments.SWEEPING)
 def sweep(
     file: Annotated[Path, typer.Argument(help="A sweep file.", metavar="SWEEP")],
-    out: arguments.Out,
+    out: arguments.Out = None,
     workers: arguments.Workers = None,
     batch: arguments.Batch = None,
     scheduler: arguments.Scheduler = None,
@@ -325,7 +325,7 @@ def sweep(
 
     Stopped or killed, the same command goes on where it was.
     """
-    out = options.results_folder(out, "sweep.json")
+    out = options.results_folder(out, "sweep.json", file)
     from jaxhydro.cli import sweep_command as command
 
     try:
@@ -361,10 +361,10 @@ def platforms() -> None:
 
 
 def _calibrate(
-    campaign: Path, out: Path, figures: bool, truth: dict[str, float] | None = None, tests: str | None = None, **how: Any
+    campaign: Path, out: Path | None, figures: bool, truth: dict[str, float] | None = None, tests: str | None = None, **how: Any
 ) -> None:
     """Calibrate; where the truth is known, compare with it and make the report page."""
-    out = options.results_folder(out, "calibration.json")
+    out = options.results_folder(out, "calibration.json", campaign)
     from calibration.commands import calibrate_command as command
 
     loaded, kind = command.load_fitted(campaign, out, tests)
@@ -373,8 +373,10 @@ def _calibrate(
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, asked: dict[str, Any], figures: bool) -> None:
-    out = options.results_folder(out, "comparison.json")
+def _simulate_campaign(
+    campaign: Path, out: Path | None, calibration: Path | None, asked: dict[str, Any], figures: bool
+) -> None:
+    out = options.results_folder(out, "comparison.json", campaign)
     from calibration.commands.calibrate_command import simulate_campaign
 
     if not simulate_campaign(campaign, out, calibration=calibration, asked=asked, figures=figures):

@@ -1,5 +1,6 @@
 """Checks of command-line options; errors name the option."""
 
+import itertools
 import math
 from pathlib import Path
 
@@ -71,6 +72,14 @@ def releases(given: list[str]) -> dict[str, float]:
     return offsets
 
 
+WORDS = {
+    "motion.csv": "simulation",
+    "calibration.json": "calibration",
+    "diagnosis.json": "diagnosis",
+    "comparison.json": "seas",
+    "uncertainty.json": "uncertainty",
+    "sweep.json": "sweep",
+}
 RESULTS = {
     "motion.csv": "a simulation",
     "calibration.json": "a calibration",
@@ -81,10 +90,32 @@ RESULTS = {
 }
 
 
-def results_folder(out: Path, mine: str) -> Path:
-    """A folder that can be written, and has no results of another command than that which writes `mine`: some are called
-    alike, and would be lost."""
-    out = check_folder(out)
+def new_folder(source: str | Path, mine: str) -> Path:
+    """A folder for the results of a command that was given none, in the working folder.
+
+    It is called after what is computed, such as my-campaign-calibration. Where there are such results already, it has a number:
+    nothing is overwritten. A job that was stopped has no results yet, and goes on in its folder.
+
+    Args:
+        source: What is computed: a campaign's folder or file, a platform, a sweep file.
+        mine: File of results that the command writes last.
+    """
+    path = Path(source)
+    named = path.parent if path.name in ("campaign.yaml", "platform.yaml") else path
+    name = f"{named.resolve().name.removesuffix('.yaml')}-{WORDS[mine]}"
+    numbers = (name if i == 1 else f"{name}-{i}" for i in itertools.count(1))
+    return next(Path(one) for one in numbers if not (Path(one) / mine).exists())
+
+
+def results_folder(out: Path | None, mine: str, source: str | Path) -> Path:
+    """A folder that can be written, and has no results of another command: some are called alike, and would be lost.
+
+    Args:
+        out: The folder; None: a new one.
+        mine: File of results that the command writes.
+        source: What is computed.
+    """
+    out = check_folder(new_folder(source, mine) if out is None else out)
     for name, of in RESULTS.items():
         # a motion.csv may be anybody's
         ours = (out / name).exists() and (name != "motion.csv" or (out / "simulated.nc").exists())

@@ -20,6 +20,7 @@ from typer.testing import CliRunner
 import jaxhydro
 from calibration.results.write_calibration import write_calibration
 from jaxhydro.cli import app as cli
+from jaxhydro.cli.options import new_folder
 
 PLATFORM = DEMO / "platform.yaml"
 RUNNER = CliRunner()
@@ -200,8 +201,21 @@ def test_folders_that_cannot_be_written_are_told_before_the_work(command, tmp_pa
     assert [path.name for path in tmp_path.iterdir()] == ["file"] and file.read_text() == "keep"
 
 
+def test_results_without_a_folder_go_to_a_new_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is overwritten; a job that was stopped, which has no results yet, goes on in its folder."""
+    monkeypatch.chdir(tmp_path)
+    job = ("simulate", "volturnus-s", "--release", "surge=1", "--duration", 20, "--no-figures")
+    (tmp_path / "volturnus-s-simulation").mkdir()
+    assert run(*job).endswith("Results are in volturnus-s-simulation")
+    first = (tmp_path / "volturnus-s-simulation" / "motion.csv").read_text()
+    assert run(*job).endswith("Results are in volturnus-s-simulation-2")
+    assert (tmp_path / "volturnus-s-simulation" / "motion.csv").read_text() == first
+    for source in ("basin", "basin/campaign.yaml", "basin/platform.yaml", "other/../basin.yaml"):
+        assert new_folder(source, "diagnosis.json") == Path("basin-diagnosis")
+    assert new_folder(".", "calibration.json") == Path(f"{tmp_path.name}-calibration")
+
+
 def test_missing_and_unknown_words_are_usage_errors(tmp_path: Path) -> None:
-    assert "Missing option '--out'" in run("simulate", PLATFORM, "--release", "surge=1", status=2)
     assert "Missing argument" in run("calibrate", "--out", tmp_path, status=2)
     assert "No such command 'calibrat'" in run("calibrat", status=2)
 
