@@ -43,6 +43,8 @@ def describe_refusal(one: Refusal) -> str:
         case RefusalKind.WORSE_TEST:
             left = f"{100 * values[1]:.1f} % of the motion is left with it, {100 * values[0]:.1f} % in the declared model"
             return f"{one.name} is followed worse with it ({left})"
+        case RefusalKind.UNSETTLED:
+            return f"not settled: {100 * values[0]:.0f} % probable at the end, but most rounds or a smaller set do without it"
         case RefusalKind.IMPROBABLE:
             said = f"{100 * values[0]:.0f} %" if values[0] >= MIN_SHOWN_PROBABILITY else "below 1 %"
             return f"improbable ({said})"

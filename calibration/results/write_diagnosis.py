@@ -38,6 +38,7 @@ from jaxhydro.files import staged
 from jaxhydro.result_model import finite_or_null, stated
 from jaxhydro.units import for_people, unit_of
 
+PROBABILITY_KINDS = (RefusalKind.IMPROBABLE, RefusalKind.UNSETTLED)
 PROBABILITY_DIGITS = 3
 
 
@@ -144,7 +145,7 @@ def _effect(one: Effect) -> FoundEffect:
 
 def _probability(one: Rejected) -> float | None:
     """Probability of an effect that is rejected for it."""
-    return _rounded(one.reason.values[0]) if one.reason.kind == RefusalKind.IMPROBABLE else None
+    return _rounded(one.reason.values[0]) if one.reason.kind in PROBABILITY_KINDS else None
 
 
 def _rounded(probability: float) -> float:

@@ -167,10 +167,12 @@ class VerifiedSearch(JointSearch):
         return tuple(name for name, evidence in best.items() if evidence > asked)
 
     def reject_others(self, state: FitState) -> None:
-        """Record why the other candidates are not in the model: their probability is low."""
+        """Record why the other candidates are not in the model: their probability is low, or most rounds do without them."""
         present = {one.name for one in state.chosen}
         for one in self.setup.candidates:
             if one.name not in present and one.name not in self.rejected:
-                self.reject(one, Refusal(RefusalKind.IMPROBABLE, (self.probability.get(one.name, 0.0),)))
+                probability = self.probability.get(one.name, 0.0)
+                kind = RefusalKind.IMPROBABLE if probability < MIN_PROBABILITY else RefusalKind.UNSETTLED
+                self.reject(one, Refusal(kind, (probability,)))
         for name in present:
             self.rejected.pop(name, None)
