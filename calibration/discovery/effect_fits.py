@@ -23,7 +23,6 @@ from calibration.residuals.decays import first_guess
 
 MAX_ITERATIONS = 50  # iterations of a full refit
 MAX_RELINEARISATIONS = 8  # new slopes in a full refit
-FINAL_RELINEARISATIONS = 3  # of a fit that begins near its end: each costs as much as thirty simulations
 REFIT_TOLERANCE = 3e-3  # of the cost: a step of a full refit that gains less ends it
 
 
@@ -109,16 +108,9 @@ class EffectFits:
         """Weigh tests in waves by the residuals that unknown forces would leave, estimated at a point."""
         self.study = replace(self.study, expected=expected_rows(self.study, place))
 
-    def refit(
-        self,
-        look: Linearisation,
-        chosen: Sequence[Candidate],
-        name: str,
-        fraction: float,
-        relinearisations: int = MAX_RELINEARISATIONS,
-    ) -> FitState:
+    def refit(self, look: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
         """Fit all directions of a linearisation until nothing is gained."""
-        reached = self.fit(look, chosen, MAX_ITERATIONS, relinearisations, name, fraction, REFIT_TOLERANCE)
+        reached = self.fit(look, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction, REFIT_TOLERANCE)
         return self.state(chosen, reached)
 
     def fit(

@@ -13,7 +13,7 @@ from calibration.discovery.acceptance import (
 )
 from calibration.discovery.broyden_fit import far_step
 from calibration.discovery.diagnosis import Score
-from calibration.discovery.effect_fits import FINAL_RELINEARISATIONS, ReportStage
+from calibration.discovery.effect_fits import ReportStage
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from calibration.discovery.fit_state import FitState, ResidualSummary
@@ -169,7 +169,7 @@ class JointSearch(Search):
     def refit_all(self, state: FitState) -> FitState:
         """Fit a state to convergence with slopes of its own, the shapes of its effects free."""
         look = self.study.linearise(state.look.place, self.active(state.chosen))
-        return self.refit(look, state.chosen, "final fit of all parameters", END, FINAL_RELINEARISATIONS)
+        return self.refit(look, state.chosen, "final fit of all parameters", END)
 
     def search(self, states: list[FitState], reach: Callable[[FitState], None]) -> FitState:
         """Select and move until the selection stays.
