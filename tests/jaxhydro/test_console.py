@@ -101,7 +101,7 @@ MISSING = [
     (
         ["report"],
         "nowhere",
-        "nowhere: expected a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote, "
+        "nowhere: expected a folder that `jaxhydro simulate`, `calibrate`, `diagnose`, `uncertainty` or `sweep` wrote, "
         "found no such folder",
     ),
     (["report"], "result", "found no such folder. Did you mean 'results'?"),
