@@ -19,19 +19,7 @@ HELD_OUT_FIRST = ("holdout", "fit", "ignore")
 
 
 def calibration_axes(calibration: Calibration, tests: Collection[str] | None = None) -> "list[Axes]":
-    """Measured motion, that of the calibrated model and that before, of all tests.
-
-    Args:
-        calibration: The calibration.
-        tests: Names of the tests to show; None: all.
-
-    Returns:
-        Axes, one for each motion that counts in the objective; `axes[0].figure` is the figure.
-
-    Raises:
-        UnknownName: There is no such test.
-        ValueError: There is no test to show.
-    """
+    """Axes of `Calibration.plot`."""
     shown = selected({test.id: test for test in calibration.tests if test.series}, tests)
     with style():
         title = f"Calibration to {calibration.campaign}"
@@ -39,19 +27,7 @@ def calibration_axes(calibration: Calibration, tests: Collection[str] | None = N
 
 
 def diagnosis_axes(diagnosis: Diagnosis, tests: Collection[str] | None = None) -> "list[Axes]":
-    """Measured motion, and that of the calibrated model without and with the effects found; held-out tests first.
-
-    Args:
-        diagnosis: The diagnosis.
-        tests: Names of the tests to show; None: all.
-
-    Returns:
-        Axes, one for each motion that counts in the objective; `axes[0].figure` is the figure.
-
-    Raises:
-        UnknownName: There is no such test.
-        ValueError: There is no test to show.
-    """
+    """Axes of `Diagnosis.plot`."""
     every = sorted(paired(diagnosis).tests, key=lambda test: HELD_OUT_FIRST.index(test.use))
     shown = selected({test.id: test for test in every if test.series}, tests)
     with style():
@@ -59,19 +35,7 @@ def diagnosis_axes(diagnosis: Diagnosis, tests: Collection[str] | None = None) -
 
 
 def campaign_axes(campaign: Campaign, tests: Collection[str] | None = None) -> "list[Axes]":
-    """Records: the released motion of a decay, else the wave and the motions that move.
-
-    Args:
-        campaign: The campaign.
-        tests: Names of the tests to show; None: all.
-
-    Returns:
-        Axes, one for each motion shown; `axes[0].figure` is the figure.
-
-    Raises:
-        UnknownName: There is no such test.
-        ValueError: There is no test to show.
-    """
+    """Axes of `Campaign.plot`."""
     shown = selected({record.id: record for record in campaign.records}, tests)
     with style():
         return records_figure(shown, f"Records of {campaign.manifest.name}").axes

@@ -1,5 +1,8 @@
 """Campaigns, calibrations and diagnoses as pandas data frames, and as HTML tables for notebooks."""
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -11,76 +14,35 @@ from jaxhydro.display.data_frames import html
 
 
 def parameters_frame(calibration: Calibration) -> pd.DataFrame:
-    """Calibrated parameters, in their own units.
-
-    Args:
-        calibration: The calibration.
-
-    Returns:
-        Columns `value`, `standard_deviation` (NaN where the records do not determine the parameter), `unit`, `start`,
-        `identifiable`, `at_bound` and `meaning`; index `parameter`.
-    """
+    """Data frame of `Calibration.to_dataframe`."""
     rows = {
-        label: {
-            "value": one.value,
-            "standard_deviation": _number(one.standard_deviation),
-            "unit": one.unit,
-            "start": one.start,
-            "identifiable": one.identifiable,
-            "at_bound": one.at_bound,
-            "meaning": one.meaning,
-        }
+        label: (one.value, _number(one.standard_deviation), one.unit, one.start, one.identifiable, one.at_bound, one.meaning)
         for label, one in calibration.parameters.items()
     }
     columns = ["value", "standard_deviation", "unit", "start", "identifiable", "at_bound", "meaning"]
-    return pd.DataFrame(list(rows.values()), columns=columns, index=pd.Index(list(rows), name="parameter", dtype=object))
+    return _frame(rows, columns, "parameter")
 
 
 def effects_frame(diagnosis: Diagnosis) -> pd.DataFrame:
-    """Effects found, a row for each of their parameters, in SI units.
-
-    Args:
-        diagnosis: The diagnosis.
-
-    Returns:
-        Columns `effect`, `motion`, `value`, `standard_deviation`, `unit`, `lower` and `upper` (plausible range),
-        `probability`, `delta_bic`, `holdout_gain`, `explained` (fraction of the unexplained error of the fitted tests) and
-        `in_doubt`; index `parameter`.
-    """
-    rows = {}
+    """Data frame of `Diagnosis.to_dataframe`."""
+    rows: dict[str, tuple[Any, ...]] = {}
     for effect in diagnosis.effects:
+        evidence = effect.evidence
+        about = (evidence.probability, evidence.delta_bic, evidence.holdout_gain, effect.share, effect.in_doubt is not None)
         for label, one in effect.parameters.items():
             size = effect.plausible.get(label)
-            rows[label] = {
-                "effect": effect.effect,
-                "motion": effect.degree_of_freedom,
-                "value": one.value,
-                "standard_deviation": _number(one.standard_deviation),
-                "unit": one.unit,
-                "lower": np.nan if size is None else size.lower,
-                "upper": np.nan if size is None else size.upper,
-                "probability": effect.evidence.probability,
-                "delta_bic": effect.evidence.delta_bic,
-                "holdout_gain": effect.evidence.holdout_gain,
-                "explained": effect.share,
-                "in_doubt": effect.in_doubt is not None,
-            }
+            plausible = (np.nan, np.nan) if size is None else (size.lower, size.upper)
+            found = (one.value, _number(one.standard_deviation), one.unit)
+            rows[label] = (effect.effect, effect.degree_of_freedom, *found, *plausible, *about)
     columns = ["effect", "motion", "value", "standard_deviation", "unit", "lower", "upper"]
     columns += ["probability", "delta_bic", "holdout_gain", "explained", "in_doubt"]
-    return pd.DataFrame(list(rows.values()), columns=columns, index=pd.Index(list(rows), name="parameter", dtype=object))
+    return _frame(rows, columns, "parameter")
 
 
 def tests_frame(campaign: Campaign) -> pd.DataFrame:
-    """Tests of a campaign, at full scale.
-
-    Args:
-        campaign: The campaign.
-
-    Returns:
-        Columns `kind`, `use`, `released` (motion of a decay), `duration_s`, `step_s`, `samples` and `file`; index `test`.
-    """
-    rows = [
-        (
+    """Data frame of `Campaign.to_dataframe`."""
+    rows = {
+        record.id: (
             record.kind,
             record.use,
             record.degree_of_freedom,
@@ -90,10 +52,13 @@ def tests_frame(campaign: Campaign) -> pd.DataFrame:
             record.file,
         )
         for record in campaign.records
-    ]
-    columns = ["kind", "use", "released", "duration_s", "step_s", "samples", "file"]
-    index = pd.Index([record.id for record in campaign.records], name="test", dtype=object)
-    return pd.DataFrame(rows, columns=columns, index=index)
+    }
+    return _frame(rows, ["kind", "use", "released", "duration_s", "step_s", "samples", "file"], "test")
+
+
+def _frame(rows: Mapping[str, Sequence[Any]], columns: list[str], name: str) -> pd.DataFrame:
+    """A data frame of rows by label; `name` is that of its index."""
+    return pd.DataFrame(list(rows.values()), columns=columns, index=pd.Index(list(rows), name=name, dtype=object))
 
 
 def calibration_html(calibration: Calibration) -> str:

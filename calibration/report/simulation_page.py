@@ -198,12 +198,9 @@ def response_sentence(conditions: str, found: Mapping[str, RegularResponse]) -> 
     "In regular waves of 3 m, 10 s the amplitudes are 0.37 m in surge (0.25 m per m of wave amplitude) ..."
     """
     most = {unit: max((one.amplitude for one in found.values() if one.unit == unit), default=0.0) for unit in ("m", "deg")}
-    said = [
-        f"{number(one.amplitude, 3)} {one.unit} in {name}"
-        for name, one in found.items()
-        if one.amplitude > MIN_SHARE * most[one.unit]
-    ]
-    each = [f"{number(one.per_metre, 2)} {one.unit}" for one in found.values() if one.amplitude > MIN_SHARE * most[one.unit]]
+    large = {name: one for name, one in found.items() if one.amplitude > MIN_SHARE * most[one.unit]}
+    said = [f"{number(one.amplitude, 3)} {one.unit} in {name}" for name, one in large.items()]
+    each = [f"{number(one.per_metre, 2)} {one.unit}" for one in large.values()]
     return f"In {conditions} the amplitudes are {listed(said)} ({listed(each)} per m of wave amplitude)."
 
 

@@ -88,8 +88,7 @@ def notes_by_kind(notes: Sequence[str], about: Sequence[NoteKind]) -> list[tuple
 
 def written_on(path: Path) -> str:
     """Day on which a file was written, such as 28 November 2026."""
-    day = date.fromtimestamp(path.stat().st_mtime)
-    return f"{day.day} {day:%B %Y}"
+    return _in_words(date.fromtimestamp(path.stat().st_mtime))
 
 
 def inputs_table(version: str, **inputs: str | None) -> Rows:
@@ -101,12 +100,11 @@ def inputs_table(version: str, **inputs: str | None) -> Rows:
     """
     rows = [(name.replace("_", " ").capitalize(), value) for name, value in inputs.items() if value]
     now = f"jaxhydro {jaxhydro.__version__}, Python {platform.python_version()}"
-    return ("Input", "Value"), [*rows, ("Results by", f"jaxhydro {version}"), ("Page by", f"{now}, {_today()}")]
+    return ("Input", "Value"), [*rows, ("Results by", f"jaxhydro {version}"), ("Page by", f"{now}, {_in_words(date.today())}")]
 
 
-def _today() -> str:
-    today = date.today()
-    return f"{today.day} {today:%B %Y}"
+def _in_words(day: date) -> str:
+    return f"{day.day} {day:%B %Y}"
 
 
 def images(stated: Iterable[Figure], folder: Path) -> dict[str, Image]:

@@ -72,28 +72,20 @@ def releases(given: list[str]) -> dict[str, float]:
     return offsets
 
 
-WORDS = {
-    "motion.csv": "simulation",
-    "calibration.json": "calibration",
-    "diagnosis.json": "diagnosis",
-    "comparison.json": "seas",
-    "uncertainty.json": "uncertainty",
-    "sweep.json": "sweep",
-}
-RESULTS = {
-    "motion.csv": "a simulation",
-    "calibration.json": "a calibration",
-    "diagnosis.json": "a diagnosis",
-    "comparison.json": "a campaign's seas",
-    "uncertainty.json": "an uncertainty",
-    "sweep.json": "a sweep",
+RESULTS = {  # file of results: how folders with it are called, and what it is of
+    "motion.csv": ("simulation", "a simulation"),
+    "calibration.json": ("calibration", "a calibration"),
+    "diagnosis.json": ("diagnosis", "a diagnosis"),
+    "comparison.json": ("seas", "a campaign's seas"),
+    "uncertainty.json": ("uncertainty", "an uncertainty"),
+    "sweep.json": ("sweep", "a sweep"),
 }
 
 
 def new_folder(source: str | Path, mine: str) -> Path:
-    """A folder for the results of a command that was given none, in the working folder.
+    """Folder in the working folder for a command without `--out`.
 
-    It is called after what is computed, such as my-campaign-calibration. Where there are such results already, it has a number:
+    It is called after what is computed, such as my-campaign-calibration. If there are such results already, it gets a number:
     nothing is overwritten. A job that was stopped has no results yet, and goes on in its folder.
 
     Args:
@@ -102,7 +94,7 @@ def new_folder(source: str | Path, mine: str) -> Path:
     """
     path = Path(source)
     named = path.parent if path.name in ("campaign.yaml", "platform.yaml") else path
-    name = f"{named.resolve().name.removesuffix('.yaml')}-{WORDS[mine]}"
+    name = f"{named.resolve().name.removesuffix('.yaml')}-{RESULTS[mine][0]}"
     numbers = (name if i == 1 else f"{name}-{i}" for i in itertools.count(1))
     return next(Path(one) for one in numbers if not (Path(one) / mine).exists())
 
@@ -116,7 +108,7 @@ def results_folder(out: Path | None, mine: str, source: str | Path) -> Path:
         source: What is computed.
     """
     out = check_folder(new_folder(source, mine) if out is None else out)
-    for name, of in RESULTS.items():
+    for name, (_, of) in RESULTS.items():
         # a motion.csv may be anybody's
         ours = (out / name).exists() and (name != "motion.csv" or (out / "simulated.nc").exists())
         if name != mine and ours:

@@ -12,6 +12,12 @@ CORNERS = np.array([(1, 1), (1, -1), (-1, -1), (-1, 1)]) / 2  # of a rectangle, 
 HULL_DIMENSIONS = ("hull_element", "hull_end", "hull_point", "axis")
 
 
+def circle(points: int) -> Float[np.ndarray, "p 2"]:
+    """Points of a circular section over its two diameters."""
+    angle = np.linspace(0.0, 2 * np.pi, points, endpoint=False)
+    return np.column_stack([np.cos(angle), np.sin(angle)]) / 2
+
+
 def element_outlines(hull: Hull, points: int = POINTS) -> Float[np.ndarray, "e 2 p 3"]:
     """Points (m) on both end sections of every load element, in body axes about the reference point.
 
@@ -25,11 +31,9 @@ def element_outlines(hull: Hull, points: int = POINTS) -> Float[np.ndarray, "e 2
     strips, elements = hull.strips, hull.elements
     first = {element: strip for strip, element in reversed(list(enumerate(strips.element)))}
     which = [first[i] for i in range(elements.length.size)]
-    angle = np.linspace(0.0, 2 * np.pi, points, endpoint=False)
-    circle = np.column_stack([np.cos(angle), np.sin(angle)]) / 2
     rectangle = np.repeat(CORNERS, points // len(CORNERS), axis=0)
     round_ = np.asarray(strips.shape)[which] < 1
-    section = np.where(round_[:, None, None], circle, rectangle)
+    section = np.where(round_[:, None, None], circle(points), rectangle)
     along = np.stack([np.zeros(len(which)), np.asarray(elements.length)], axis=1)
     size, taper = (np.asarray(one)[:, which].T[:, None] for one in (strips.size, strips.taper))
     sizes = size + taper * along[..., None]

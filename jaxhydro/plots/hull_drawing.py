@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from scipy.spatial import ConvexHull
 
-from jaxhydro.hull.outline import CORNERS
+from jaxhydro.hull.outline import CORNERS, circle
 from jaxhydro.hull.strips import Member
 from jaxhydro.plots.style import GREY, MEASURED, WAVE, header, stack
 
@@ -27,8 +27,7 @@ def outline(member: Member) -> np.ndarray:
     Returns:
         Points (m) of every section, (sections, points, 3).
     """
-    angle = np.linspace(0.0, 2 * np.pi, POINTS, endpoint=False)
-    section = np.column_stack([np.cos(angle), np.sin(angle)]) / 2 if member.circular else CORNERS
+    section = circle(POINTS) if member.circular else CORNERS
     one, two = (np.asarray(direction) for direction in member.directions)
     middles = member.a + np.asarray(member.stations)[:, None] * (member.b - member.a)
     across = section[None] * np.asarray(member.sizes)[:, None]

@@ -26,7 +26,7 @@ def left_out_deviances(model: LinearModel, columns: Sequence[int], group: np.nda
     for number in np.unique(group[model.used]):
         out = group == number
         rest = model.with_freedom(np.where(out, 0.0, model.freedom)).fit(columns, begin)
-        there = model.with_freedom(np.where(out, model.freedom, 0.0)).fit((), start=model.vector(rest))
+        there = model.with_freedom(np.where(out, model.freedom, 0.0)).fit((), start=model.steps_after(rest))
         found[number] = float(there.deviance.sum())
     return found
 

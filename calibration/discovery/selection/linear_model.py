@@ -137,7 +137,7 @@ class LinearModel:
         Args:
             columns: Numbers of the columns.
             begin: A fit whose weights are the first.
-            start: Where all columns are before the fit, and 1 (k + 1,); None: those that are not fitted are neutral.
+            start: Steps along all columns before the fit, and 1 (k + 1,); None: columns that are not fitted are neutral.
         """
         columns = list(columns)
         mean, width = self.mean[columns], self.width[columns]
@@ -159,9 +159,9 @@ class LinearModel:
             penalty = float((((step - mean) / width) ** 2).sum())
             penalty += sum(float((((one.value + y) / one.width) ** 2).sum()) for one, y in zip(self.own, own, strict=True))
             at_bound = (step <= low) | (step >= high)
-            spread = self._spread(level)
+            levels = self._by_pool(level)
             before = cost
-            found = LinearFit(tuple(columns), step, own, spread, self.deviances(spread), penalty, matrix, at_bound)
+            found = LinearFit(tuple(columns), step, own, levels, self.deviances(levels), penalty, matrix, at_bound)
             cost = found.cost
             if abs(before - cost) < SMALL_CHANGE:
                 break
@@ -172,17 +172,17 @@ class LinearModel:
         """Products of all columns and of the residual after a fit, with that fit's weights (k + 1, k + 1)."""
         sums = self.products.weighted(self.weights(found.levels[self.products.pools]))
         values = [one.value + y for one, y in zip(self.own, found.own, strict=True)]
-        return self.eliminated(sums.moved(self.vector(found), found.own), values)[0]
+        return self.eliminated(sums.moved(self.steps_after(found), found.own), values)[0]
 
-    def vector(self, found: LinearFit) -> np.ndarray:
-        """Where all columns are after a fit, and 1 for the residual (k + 1,)."""
+    def steps_after(self, found: LinearFit) -> np.ndarray:
+        """Steps along all columns after a fit, and 1 for the residual (k + 1,)."""
         at = self._without(found.columns)
         at[list(found.columns)] = found.step
         return at
 
     def residual_after(self, found: LinearFit) -> np.ndarray:
         """Residual (n,) after the steps of a fit."""
-        at = self.vector(found)[:-1]
+        at = self.steps_after(found)[:-1]
         moved = np.flatnonzero(at)
         residual = self.residual + self.slopes[:, moved] @ at[moved]
         for one, y in zip(self.own, found.own, strict=True):
@@ -190,13 +190,17 @@ class LinearModel:
         return residual
 
     def _without(self, columns: Sequence[int]) -> np.ndarray:
-        """Where all other columns are neutral, and 1 for the residual (k + 1,)."""
+        """Steps to where all other columns are neutral, and 1 for the residual (k + 1,)."""
         at = np.append(self.neutral, 1.0)
         at[list(columns)] = 0.0
         return at
 
-    def _spread(self, level: np.ndarray) -> np.ndarray:
-        """Mean squares of all pools, of those of the pools that have rows."""
+    def _by_pool(self, level: np.ndarray) -> np.ndarray:
+        """Mean squares by pool (p,), 0 in pools without rows.
+
+        Args:
+            level: Mean squares of the pools that have rows.
+        """
         every = np.zeros(len(self.freedom))
         every[self.products.pools] = level
         return every

@@ -77,7 +77,7 @@ class Selection:
 
     @property
     def best(self) -> Subset:
-        """The most probable subset of those with the fewest effects against which the evidence is not strong."""
+        """Of the subsets that are not clearly worse than the first, the most probable one with the fewest effects."""
         near = [one for one in self.subsets if one.evidence > self.subsets[0].evidence - STRONG_EVIDENCE]
         return min(near, key=lambda one: (len(one.variants), -one.evidence))
 
