@@ -150,16 +150,16 @@ def test_what_is_written(results):
 def test_results_of_other_commands_stay_apart(results, tmp_path):
     """No command spoils another's folder, where files are called alike; a motion.csv alone may be anybody's."""
     with pytest.raises(InputError, match="the results of a campaign's seas"):
-        results_folder(results, "calibration.json")
-    assert results_folder(results, "comparison.json") == results
+        results_folder(results, "calibration.json", "a-campaign")
+    assert results_folder(results, "comparison.json", "a-campaign") == results
     (tmp_path / "motion.csv").write_text("")
-    assert results_folder(tmp_path, "comparison.json") == tmp_path
+    assert results_folder(tmp_path, "comparison.json", "a-campaign") == tmp_path
     (tmp_path / "uncertainty.json").write_text("{}")
     with pytest.raises(InputError, match="the results of an uncertainty"):
-        results_folder(tmp_path, "comparison.json")
+        results_folder(tmp_path, "comparison.json", "a-campaign")
     (tmp_path / "uncertainty.json").rename(tmp_path / "simulated.nc")
     with pytest.raises(InputError, match="the results of a simulation"):
-        results_folder(tmp_path, "comparison.json")
+        results_folder(tmp_path, "comparison.json", "a-campaign")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["motion.csv", "simulated.nc"]
 
 
