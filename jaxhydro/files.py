@@ -41,7 +41,9 @@ def campaign_file(path: str | os.PathLike[str]) -> Path:
     if not (path / MANIFEST).is_file():
         others = {file.stem: file.name for file in path.iterdir() if file.suffix in YAML}
         near = nearest(Path(MANIFEST).stem, others)
-        hint = f"Did you mean '{path / others[near]}'?" if near else ""
+        data = path / "*.csv" if any(path.glob("*.csv")) else "DATA_FILES"
+        make = f"`jaxhydro init NEW_FOLDER {data}` makes one."
+        hint = f"Did you mean '{path / others[near]}'?" if near else make
         raise InputError(str(path), [Problem("", expected, f"a folder without {MANIFEST}", hint)])
     return path / MANIFEST
 

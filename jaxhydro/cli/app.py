@@ -1,6 +1,5 @@
 """Command-line application; each command imports what it needs."""
 
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,7 +8,7 @@ from typer.core import TyperGroup
 
 from jaxhydro.cli import arguments, options, sea_options
 from jaxhydro.cli.console import complain, say, table, warnings_told
-from jaxhydro.errors import InputError
+from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.files import campaign_file
 from jaxhydro.interrupts import asked_to_stop, ended_by_signals
 
@@ -33,13 +32,6 @@ TRUTH = {  # what the records of the demo were made with: Table 1 of the paper t
     "linear_damping.B33": 1.6e5,
     "linear_damping.B55": 3.63e8,
 }
-
-
-class SchemaFile(StrEnum):
-    """Input file that has a schema."""
-
-    CAMPAIGN = "campaign"
-    PLATFORM = "platform"
 
 
 class Guarded(TyperGroup):
@@ -338,7 +330,7 @@ def sweep(
 
 @app.command()
 def schema(
-    file: Annotated[SchemaFile, typer.Argument(help="Which file.", show_default=False)],
+    file: Annotated[str, typer.Argument(help="campaign or platform.", show_default=False)],
 ) -> None:
     """Print the JSON Schema of campaign.yaml or platform.yaml: editors complete keys by it and mark mistakes."""
     import json
@@ -346,8 +338,10 @@ def schema(
     from calibration.campaign.manifest import Manifest
     from jaxhydro.platform.schema import Platform
 
-    kind = Manifest if file == SchemaFile.CAMPAIGN else Platform
-    typer.echo(json.dumps(kind.model_json_schema(), indent=2, ensure_ascii=False))
+    kinds = {"campaign": Manifest, "platform": Platform}
+    if file not in kinds:
+        raise InputError("schema", [Problem("", " or ".join(kinds), repr(file), suggest(file, kinds))])
+    typer.echo(json.dumps(kinds[file].model_json_schema(), indent=2, ensure_ascii=False))
 
 
 @app.command()

@@ -376,15 +376,16 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
 
 
 @pytest.mark.parametrize(
-    ("selected", "kept"),
+    ("selected", "kept", "required"),
     [
-        (["a", "ab", "ab"], "ab"),  # the set stays
-        (["ab", "ac", "ab"], "ab"),  # two sets in turn: what two of three have
-        (["ab", "ac", "ad", "ae", "af", "ag"], "a"),  # the last round: what all have
-        (["a", ""], "a"),  # nothing at all: verification decides
+        (["a", "ab", "ab"], "ab", ["", "", ""]),  # the set stays
+        (["ab", "ac", "ab"], "ab", ["", "", ""]),  # two sets in turn: what two of three have
+        (["ab", "abc", "bd", "abe", "abf", "abg"], "ab", ["", "", "", "ab", "ab", "ab"]),  # the last round: what most have
+        (["a", "ab", "bc", "abd", "abd"], "abd", ["", "", "", "ab", "ab"]),  # beside what stays the set stays
+        (["a", ""], "a", ["", ""]),  # nothing at all: verification decides
     ],
 )
-def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(selected, kept):
+def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(selected, kept, required):
     class Effect(NamedTuple):
         name: str
 
@@ -392,7 +393,7 @@ def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(select
     class State:
         chosen: tuple[Effect, ...]
 
-    names, rounds = "abcdefg", iter(selected)
+    names, rounds, asked = "abcdefg", iter(selected), []
 
     def subset(chosen: str) -> Any:
         return SimpleNamespace(variants=tuple(names.index(name) for name in chosen), evidence=float(len(chosen)))
@@ -406,7 +407,8 @@ def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(select
         def with_split_modes(self, baseline):
             return None
 
-        def select(self, state, number):
+        def select(self, state, number, required):
+            asked.append("".join(sorted(required)))
             return subset(next(rounds))
 
         def fit_subset(self, state, columns, one, stage, share):
@@ -421,6 +423,7 @@ def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(select
     states: Any = [State(())]
     found = Scripted().search(states, states.append)
     assert "".join(one.name for one in found.chosen) == kept and next(rounds, None) is None
+    assert asked == required
 
 
 def test_gain_in_waves_is_where_an_effect_acts():

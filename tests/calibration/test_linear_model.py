@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from calibration.discovery.selection.cross_validation import held_out_gain, left
 from calibration.discovery.selection.joint_selection import MAX_EFFECTS, JointSelection
 from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, bounded_minimum
 from calibration.discovery.selection.pooled_products import OwnUnknowns
-from calibration.discovery.selection.subsets import Variant
+from calibration.discovery.selection.subsets import Selection, Variant
 
 ROWS, POOLS = 240, 12
 
@@ -172,6 +173,20 @@ def test_only_the_named_variants_are_selected() -> None:
     chosen = JointSelection(model, range(2), selection(model).variants, np.arange(POOLS), among=[1, 2])
     found = chosen.run()
     assert found.names(found.best) == ("effect 3",) and "effect 5" not in found.probability()
+
+
+def test_a_required_effect_is_in_the_answer_and_keeps_its_probability() -> None:
+    """One that does nothing stays improbable; what is there is found beside it. Where it hardly matters it stays, too."""
+    model = linear_model(12, {5: 1.0})
+
+    def one(**options: Any) -> Selection:
+        return JointSelection(model, range(2), selection(model).variants, np.arange(POOLS), **options).run()
+
+    found = one(required=frozenset({"effect 8"}))
+    assert set(found.names(found.best)) == {"effect 5", "effect 8"}
+    assert found.probability()["effect 5"] > 0.95 and found.probability().get("effect 8", 0.0) < 0.5
+    found = one(required=frozenset({"effect 5"}), matters=lambda before, after: False)
+    assert found.names(found.best) == ("effect 5",)
 
 
 def test_a_model_that_leaves_more_than_noise_has_fewer_observations() -> None:

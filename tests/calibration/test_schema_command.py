@@ -39,4 +39,7 @@ def test_a_wrong_key_is_marked(schema):
 
 
 def test_an_unknown_file_is_refused():
-    assert CliRunner().invoke(cli.app, ["schema", "sea"]).exit_code == 2
+    for word, hint in (("sea", ""), ("campain", " Did you mean 'campaign'?")):
+        result = CliRunner().invoke(cli.app, ["schema", word])
+        assert result.exit_code == 2
+        assert " ".join(result.stderr.split()).endswith(f"expected campaign or platform, found '{word}'" + (hint and f".{hint}"))

@@ -82,11 +82,11 @@ MISSING = [
             ("nowhere", "no such folder"),
             ("my-campain", "no such folder. Did you mean 'my-campaign'?"),
             ("my-campain/campaign.yaml", "no such file. Did you mean 'my-campaign/campaign.yaml'?"),
-            ("empty", "a folder without campaign.yaml"),
+            ("empty", "a folder without campaign.yaml. `jaxhydro init NEW_FOLDER DATA_FILES` makes one."),
             ("almost", "a folder without campaign.yaml. Did you mean 'almost/campaing.yml'?"),
         )
     ),
-    (["simulate"], "empty", f"empty: {CAMPAIGN} a folder without campaign.yaml"),
+    (["simulate"], "empty", f"empty: {CAMPAIGN} a folder without campaign.yaml. `jaxhydro init"),
     (
         ["simulate"],
         "nowhere",

@@ -29,6 +29,7 @@ from calibration.formatting import listed
 MAX_ROUNDS = 6  # linearisations along all candidates
 STEP_ITERATIONS = 15  # iterations of a fit with the slopes at hand
 USUAL_ROUNDS = 3  # for progress
+FREE_ROUNDS = 3  # rounds after which what most sets have stays
 BEGIN, END = 0.25, 0.65  # progress of the rounds
 
 
@@ -52,7 +53,7 @@ class JointSearch(Search):
         """Progress after so many rounds."""
         return BEGIN + (END - BEGIN) * min(number / USUAL_ROUNDS, 1.0)
 
-    def select(self, state: FitState, number: int) -> Subset:
+    def select(self, state: FitState, number: int, required: frozenset[str] = frozenset()) -> Subset:
         """Linearise a state along all candidates, and select.
 
         The laboratory comes first: where mistakes of it are among the effects that the declared model lacks, those alone are
@@ -61,6 +62,7 @@ class JointSearch(Search):
         Args:
             state: The fitted model.
             number: Number of the round.
+            required: Names of effects that the subset has to have.
 
         Returns:
             The most probable subset.
@@ -72,7 +74,7 @@ class JointSearch(Search):
             self.say(f"round {number}: comparing sets of effects", self.share(number - 0.6), count)
 
         told(0)
-        self.selector = self.selection(columns, told)
+        self.selector = self.selection(columns, told, required=required)
         present = columns.present(state.chosen)
         found = self.selector.run(present)
         self.probability = found.probability()
@@ -85,7 +87,11 @@ class JointSearch(Search):
         return alone if alone.variants else best
 
     def selection(
-        self, columns: CandidateColumns, told: Callable[[int], None], among: Sequence[int] | None = None
+        self,
+        columns: CandidateColumns,
+        told: Callable[[int], None],
+        among: Sequence[int] | None = None,
+        required: frozenset[str] = frozenset(),
     ) -> JointSelection:
         """Selection on a linear model, of effects that matter.
 
@@ -93,6 +99,7 @@ class JointSearch(Search):
             columns: The linear model.
             told: Called with the number of subsets that were fitted.
             among: Variants that may be selected; None: all.
+            required: Names of effects that the subset has to have.
         """
         study = self.study
 
@@ -101,7 +108,7 @@ class JointSearch(Search):
             share, some = HeldOutComparison(study, study.used, without, with_it, False).error_reduction()
             return not some or share >= MIN_HELD_OUT_SHARE
 
-        return JointSelection(columns.model, columns.base, columns.variants, columns.series, told, matters, among)
+        return JointSelection(columns.model, columns.base, columns.variants, columns.series, told, matters, among, required)
 
     def score(self, subset: Subset, number: int) -> None:
         """Record the first-order gain of every candidate beside a subset, in a round."""
@@ -154,13 +161,12 @@ class JointSearch(Search):
         predicted = minus_two_log_likelihood(self.study, self.columns.model.residual_after(subset.fit))
         return abs(float((state.likelihood - predicted)[self.study.used].sum())) < MIN_BIC_GAIN
 
-    def majority(self, sets: Sequence[frozenset[str]]) -> Subset:
-        """The effects that more than half of some sets have, with the shapes that they have in the most probable subset.
+    def with_shapes(self, names: frozenset[str]) -> Subset:
+        """Effects with the shapes that they have in the most probable subset.
 
         Args:
-            sets: Names of effects by set.
+            names: Names of the effects.
         """
-        names = {name for name in frozenset().union(*sets) if 2 * sum(name in one for one in sets) > len(sets)}
         variants: dict[str, int] = {}
         for subset in sorted(self.selector.fitted.values(), key=lambda one: one.evidence):
             variants |= {name: i for i in subset.variants if (name := self.columns.variants[i].name) in names}
@@ -174,6 +180,9 @@ class JointSearch(Search):
     def search(self, states: list[FitState], reach: Callable[[FitState], None]) -> FitState:
         """Select and move until the selection stays.
 
+        Where sets alternate, none is the answer: after `FREE_ROUNDS` every set has the effects that more than half of the sets
+        before it have.
+
         Args:
             states: The fitted declared model, and what earlier rounds reached.
             reach: Called with the state after every round.
@@ -185,13 +194,14 @@ class JointSearch(Search):
             states.append(better)
         state, visited = states[-1], {frozenset(one.name for one in some.chosen) for some in states}
         for number in range(len(states), MAX_ROUNDS + 1):
-            best = self.select(state, number)
+            sets = [frozenset(one.name for one in some.chosen) for some in states[1:]]
+            best = self.select(state, number, majority(sets) if number > FREE_ROUNDS else frozenset())
             names = frozenset(self.columns.variants[i].name for i in best.variants)
             if not names or names == {one.name for one in state.chosen}:
                 break
-            if names in visited or number == MAX_ROUNDS:  # sets alternate: none is the answer
-                sets = [*(frozenset(one.name for one in some.chosen) for some in states[1:]), names]
-                state = self.fit_subset(state, self.columns, self.majority(sets), f"round {number}", self.share(number))
+            if names in visited or number == MAX_ROUNDS:
+                kept = self.with_shapes(majority([*sets, names]))
+                state = self.fit_subset(state, self.columns, kept, f"round {number}", self.share(number))
                 break
             visited.add(names)
             before, state = state, self.fit_subset(state, self.columns, best, f"round {number}", self.share(number - 0.5))
@@ -218,3 +228,8 @@ class JointSearch(Search):
                 found.append(self.refit(look, (one,), f"trial of {effect_in_words(one.name)}", BEGIN))
         best = self.likeliest(*found)
         return best if self.likelihood_gain(baseline, best) > MIN_LIKELIHOOD_GAIN else None
+
+
+def majority(sets: Sequence[frozenset[str]]) -> frozenset[str]:
+    """The names that more than half of some sets have."""
+    return frozenset(name for name in frozenset().union(*sets) if 2 * sum(name in one for one in sets) > len(sets))

@@ -46,6 +46,7 @@ class JointSelection:
         told: Called with the number of subsets that were fitted.
         matters: Whether an effect matters, from the residuals without and with it; None: every effect does.
         among: Variants that may be added; None: all.
+        required: Names of effects that every answer has. They are left out in turn all the same, for their probability.
     """
 
     def __init__(
@@ -57,9 +58,11 @@ class JointSelection:
         told: Callable[[int], None] = lambda count: None,
         matters: Callable[[np.ndarray, np.ndarray], bool] | None = None,
         among: Sequence[int] | None = None,
+        required: frozenset[str] = frozenset(),
     ) -> None:
         self.model, self.base, self.variants, self.series, self.told = model, tuple(base), tuple(variants), series, told
         self.matters, self.among = matters, frozenset(range(len(variants)) if among is None else among)
+        self.required = required
         self.fitted: dict[tuple[int, ...], Subset] = {}
         self.judged: dict[tuple[int, ...], bool] = {}
 
@@ -83,7 +86,8 @@ class JointSelection:
             return subset.plausible
         if subset.variants not in self.judged:
             after = self.model.residual_after(subset.fit)
-            rest = (self.model.residual_after(self.without(subset, i).fit) for i in subset.variants)
+            asked = (i for i in subset.variants if self.variants[i].name not in self.required)
+            rest = (self.model.residual_after(self.without(subset, i).fit) for i in asked)
             self.judged[subset.variants] = all(self.matters(before, after) for before in rest)
         return self.judged[subset.variants]
 
@@ -149,13 +153,13 @@ class JointSelection:
         Args:
             begin: Variants of a subset to begin with, beside none.
         """
-        self.temper(self.grown(self.subset(begin)))
+        self.temper(self.grown(self.with_required(self.subset(begin))))
         self.subset(())
-        if begin:
-            self.subset(begin)
+        if begin or self.required:
+            self.with_required(self.subset(begin))
         done: set[tuple[int, ...]] = set()
         while len(self.fitted) < MAX_SUBSETS:
-            todo = next((one for one in self.best(EXPANDED_SUBSETS) if one.variants not in done), None)
+            todo = next((one for one in self.answers(EXPANDED_SUBSETS) if one.variants not in done), None)
             if todo is None:
                 break
             done.add(todo.variants)
@@ -164,7 +168,15 @@ class JointSelection:
             self.told(len(self.fitted))
         (best,) = self.best(1)
         subsets = tuple(takewhile(lambda one: one.evidence > best.evidence + MIN_LOG_POSTERIOR, self.best()))
-        return Selection(subsets, self.variants, bagged_posterior(subsets, self.series, self.model.used))
+        return Selection(subsets, self.variants, bagged_posterior(subsets, self.series, self.model.used), tuple(self.answers()))
+
+    def with_required(self, subset: Subset) -> Subset:
+        """A subset with the required effects that it lacks, each in its most promising variant."""
+        while not self.has_required(subset):
+            there = {self.variants[i].name for i in subset.variants}
+            lacking = (i for i in self.additions(subset) if self.variants[i].name in self.required - there)
+            subset = self.subset([*subset.variants, next(lacking)], subset)
+        return subset
 
     def grown(self, subset: Subset) -> Subset:
         """A subset to which effects are added one by one as long as the evidence grows."""
@@ -181,6 +193,14 @@ class JointSelection:
         discrepancy = self.model.discrepancy(self.model.residual_after(best.fit))
         if discrepancy > MIN_DISCREPANCY:
             self.model, self.fitted, self.judged = self.model.tempered(discrepancy), {}, {}
+
+    def has_required(self, subset: Subset) -> bool:
+        """Whether a subset has every required effect."""
+        return self.required <= {self.variants[i].name for i in subset.variants}
+
+    def answers(self, most: int | None = None) -> Iterator[Subset]:
+        """Those of `best` that have every required effect, so many at most."""
+        return islice(filter(self.has_required, self.best()), most)
 
     def best(self, most: int | None = None) -> Iterator[Subset]:
         """The fitted subsets that take part, the most probable first, so many at most."""

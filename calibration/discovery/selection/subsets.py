@@ -69,16 +69,19 @@ class Selection:
         subsets: Subsets, the most probable first.
         variants: The variants.
         weights: Bagged posterior probability of every subset.
+        answers: Subsets that may be the answer, the most probable first; none: all may.
     """
 
     subsets: tuple[Subset, ...]
     variants: tuple[Variant, ...]
     weights: np.ndarray
+    answers: tuple[Subset, ...] = ()
 
     @property
     def best(self) -> Subset:
-        """Of the subsets that are not clearly worse than the first, the most probable one with the fewest effects."""
-        near = [one for one in self.subsets if one.evidence > self.subsets[0].evidence - STRONG_EVIDENCE]
+        """Of the answers that are not clearly worse than the first, the most probable one with the fewest effects."""
+        answers = self.answers or self.subsets
+        near = [one for one in answers if one.evidence > answers[0].evidence - STRONG_EVIDENCE]
         return min(near, key=lambda one: (len(one.variants), -one.evidence))
 
     def names(self, subset: Subset) -> tuple[str, ...]:
