@@ -338,7 +338,7 @@ def schema(
     from calibration.campaign.manifest import Manifest
     from jaxhydro.platform.schema import Platform
 
-    kinds = {"campaign": Manifest, "platform": Platform}
+    kinds: dict[str, type[Manifest | Platform]] = {"campaign": Manifest, "platform": Platform}
     if file not in kinds:
         raise InputError("schema", [Problem("", " or ".join(kinds), repr(file), suggest(file, kinds))])
     typer.echo(json.dumps(kinds[file].model_json_schema(), indent=2, ensure_ascii=False))
