@@ -20,6 +20,7 @@ from capytaine.bem.airy_waves import froude_krylov_force
 from ruamel.yaml import YAML
 
 HULLS = Path(__file__).with_name("hulls")
+PLATFORMS = Path(__file__).resolve().parents[1] / "jaxhydro" / "platforms"
 GRAVITY = 9.80665  # m/s2
 LID = 0.01  # m, under still water
 DOFS = ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")
@@ -136,7 +137,7 @@ def moored(platform: dict) -> np.ndarray:
 
 def solved(name: str) -> dict:
     """Natural periods (s), added mass there (kg, kg m2), and motion per metre of wave amplitude."""
-    platform = YAML(typ="safe").load(HULLS / f"{name}.yaml")
+    platform = YAML(typ="safe").load(PLATFORMS / f"{name}.yaml")
     density, depth = platform["water"]["density"], platform["water"]["depth"]
     body, solver = body_of(name), cpt.BEMSolver()
     volume, pressure = hydrostatics(body, density)

@@ -6,7 +6,7 @@ from typing import Any
 
 from benchmarks.evidence import hulls_cases
 from benchmarks.evidence.common import Section, cached, fingerprint, say, table
-from benchmarks.evidence.hulls_cases import BUILT_IN, CASES, HULLS, Case
+from benchmarks.evidence.hulls_cases import CASES, HULLS, PLATFORMS, Case
 
 TITLE = "Five public hulls"
 POTENTIAL = HULLS / "potential-flow.json"
@@ -109,7 +109,7 @@ def run(figures: Path) -> Section:
     from benchmarks.evidence import hulls_runs
 
     beside = [Path(__file__).with_name(f"{part}.py") for part in ("hulls_cases", "hulls_runs", "hulls_reference")]
-    key = fingerprint(HULLS, BUILT_IN, *beside)
+    key = fingerprint(HULLS, PLATFORMS, *beside)
     results = {name: cached("hulls", key, name, lambda case=case: hulls_runs.worked_out(case)) for name, case in CASES.items()}
     return text(results, cached("hulls", key, "variants", two_members), json.loads(POTENTIAL.read_text("utf-8")))
 
@@ -131,8 +131,7 @@ def text(results: dict[str, Any], variants: dict[str, Any], panels: dict[str, An
             )
     largest = {label: max(abs(x) for kind in one.values() for x in kind.values()) for label, one in variants.items()}
     body = (
-        "The platform files are in `benchmarks/hulls/`, with the source of every number; VolturnUS-S is the "
-        "built-in one. Mass, "
+        "The platforms are built in (`jaxhydro platforms`); their files have the source of every number. Mass, "
         "geometry and linearised mooring are published. Added mass is that of strips, whose coefficients follow "
         "from published or "
         "computed added mass in surge and heave; periods of pitch, roll and yaw are predictions. Waves are small: 1 "

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 HULLS = Path(__file__).resolve().parents[1] / "hulls"
-BUILT_IN = Path(__file__).resolve().parents[2] / "jaxhydro" / "platforms" / "volturnus-s.yaml"
+PLATFORMS = Path(__file__).resolve().parents[2] / "jaxhydro" / "platforms"
 RAFT = "RAFT at e6cb69e, tests/test_model.py: its strips (OC4: WAMIT) and MoorPy's lines"
 OC4_SOURCE = "NREL's forum, topic 1730, post 7, of Robertson et al. 2014 (OMAE2014-24040), figure 3"
 
@@ -36,7 +36,7 @@ class Case(NamedTuple):
 CASES = {
     "oc3-hywind": Case(
         "OC3-Hywind",
-        HULLS / "oc3-hywind.yaml",
+        PLATFORMS / "oc3-hywind.yaml",
         20.0,
         0.01,
         0.0,
@@ -52,7 +52,7 @@ CASES = {
     ),
     "oc4-deepcwind": Case(
         "OC4-DeepCwind",
-        HULLS / "oc4-deepcwind.yaml",
+        PLATFORMS / "oc4-deepcwind.yaml",
         14.0,
         0.01,
         0.0,
@@ -63,14 +63,14 @@ CASES = {
     ),
     "volturnus-s": Case(
         "VolturnUS-S",
-        BUILT_IN,
+        PLATFORMS / "volturnus-s.yaml",
         14.0,
         0.01,
         0.0,
         (Published({"surge": 0.007, "heave": 0.049, "pitch": 0.036}, 5e-4, "the report, NREL/TP-5000-76773"),),
     ),
-    "iti-barge": Case("ITI Energy barge", HULLS / "iti-barge.yaml", 20.0, 0.01, 0.0),
-    "ship-section": Case("ship section, 0.4 m wide", HULLS / "ship-section.yaml", 3.0, 2e-4, 90.0),
+    "iti-barge": Case("ITI Energy barge", PLATFORMS / "iti-barge.yaml", 20.0, 0.01, 0.0),
+    "ship-section": Case("ship section, 0.4 m wide", PLATFORMS / "ship-section.yaml", 3.0, 2e-4, 90.0),
 }
 BASES = {
     "name": "base_column",

@@ -347,11 +347,12 @@ def schema(
 @app.command()
 def platforms() -> None:
     """List the built-in platforms."""
-    from jaxhydro.cli.simulate_command import particulars
+    from jaxhydro.cli.platform_list import HEADS, particulars
     from jaxhydro.platform.schema import builtin_platforms
 
-    heads = ("Name", "Platform", "Mass (t)", "Volume (m³)", "Surge (s)", "Heave (s)", "Pitch (s)")
-    table("Built-in platforms and their natural periods", heads, [particulars(name) for name in builtin_platforms()], 2)
+    table("Built-in platforms", HEADS, [particulars(name) for name in builtin_platforms()], 2)
+    say("Copy one to edit: jaxhydro init FOLDER --platform NAME")
+    say("Let one go: jaxhydro simulate NAME --release heave=1")
 
 
 def _calibrate(

@@ -16,13 +16,10 @@ from jaxhydro.cli.console import complain, say, table
 from jaxhydro.cli.simulation_files import Motion, write_motion
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.simulate import default_step, free_decay
-from jaxhydro.dynamics.statics import equilibrium, natural_modes, stable_modes
+from jaxhydro.dynamics.statics import equilibrium, stable_modes
 from jaxhydro.dynamics.table_ranges import regular_fault
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.loads import Buoyancy
-from jaxhydro.platform.build import build
-from jaxhydro.platform.schema import load_platform
 from jaxhydro.remarks import Remark
 from jaxhydro.rotations import rotation
 from jaxhydro.units import for_people, unit_of
@@ -191,16 +188,3 @@ def _print_motion(motion: Motion, wave: tuple[float, float] | None, ramp: float)
         numbers = (f"{column[i]:.4g}" if abs(column[i]) > 1e-9 else "0" for column in columns)
         rows.append((f"{dof} ({unit_of(dof)})", *numbers))
     table("Motion", heads, rows)
-
-
-def particulars(name: str) -> tuple[str, ...]:
-    """A built-in platform: name, title, mass (t), displaced volume (m3), natural periods of surge, heave, pitch (s)."""
-    platform = load_platform(name)
-    model = build(platform)
-    load = next(load for load in model.loads if isinstance(load, Buoyancy))
-    volume = platform.hydrostatics.displaced_volume
-    if volume is None:
-        volume = float(load.geometry(jnp.zeros(()), jnp.array([0.0, 0.0, 1.0]))[0].sum())
-    modes = natural_modes(model)
-    periods = (modes.of(dof) for dof in ("surge", "heave", "pitch"))
-    return name, platform.name, f"{float(model.body.mass) / 1e3:.0f}", f"{volume:.0f}", *(f"{p:.1f}" for p in periods)

@@ -15,8 +15,9 @@ from jaxhydro.cli import console
 from jaxhydro.cli.app import TRUTH
 from jaxhydro.cli.console import column_widths, table
 from jaxhydro.errors import suggest_path
+from jaxhydro.platform.schema import builtin_platforms
 
-NAMES = ["volturnus-s", "volturnus-s-focal"]
+NAMES = list(builtin_platforms())
 
 
 def printed(width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *what, left: int = 1) -> str:
@@ -90,7 +91,7 @@ MISSING = [
     (
         ["simulate"],
         "nowhere",
-        "nowhere: expected a platform file, a built-in platform (volturnus-s, volturnus-s-focal), or a "
+        f"nowhere: expected a platform file, a built-in platform ({', '.join(NAMES)}), or a "
         "campaign's folder, found no such file or folder",
     ),
     (["simulate"], "my-campain", "found no such file or folder. Did you mean 'my-campaign'?"),

@@ -106,6 +106,10 @@ def test_shared_files_load(folder: str) -> None:
     assert load_platform(file).rigid_body.combined()[0] > 0.0
 
 
+# relative, of weight and lines: mass, lines and geometry of these hulls are from several public sources
+IN_BALANCE = {"iti-barge": 0.035, "oc3-hywind": 1e-3, "oc4-deepcwind": 1e-3}
+
+
 @pytest.mark.parametrize("name", builtin_platforms())
 def test_built_in_platforms_load_and_float(name: str) -> None:
     platform = load_platform(name)
@@ -115,20 +119,27 @@ def test_built_in_platforms_load_and_float(name: str) -> None:
     if isinstance(platform.mooring, StiffnessMatrix):
         volume = platform.hydrostatics.displaced_volume or volume
         weight -= platform.mooring.preload[2]
-    assert platform.water.density * platform.water.gravity * volume == pytest.approx(weight, rel=1e-8)
+    assert platform.water.density * platform.water.gravity * volume == pytest.approx(weight, rel=IN_BALANCE.get(name, 1e-8))
 
 
 def submerged_volume(member: Member) -> float:
-    """Of an untapered vertical or submerged member, m3."""
-    width, height = member.profile()[1][0]
-    area = np.pi / 4.0 * width**2 if member.shape == "circ" else width * height
+    """Volume under still water (m3), by slices across the member."""
+    stations, sizes = member.profile()
     bottom, top = np.array(member.rA), np.array(member.rB)
-    top[2] = min(top[2], 0.0)
-    return float(area * np.linalg.norm(top - bottom)) * len(member.heading)
+    edges = np.unique([*np.linspace(0, 1, 2001), *stations, np.clip(bottom[2] / (bottom[2] - top[2] or 1.0), 0, 1)])
+    middle, length = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges) * np.linalg.norm(top - bottom)
+    width, height = (np.interp(middle, stations, sizes[:, i]) for i in range(2))
+    depth = -(bottom[2] + middle * (top[2] - bottom[2]))
+    if bottom[2] == top[2]:  # a level box, wet to still water
+        height = np.clip(0.5 * height + depth, 0.0, height)
+        depth = height
+    area = np.pi / 4.0 * width**2 if member.shape == "circ" else width * height
+    return float(np.where(depth > 0, area, 0.0) @ length) * len(member.heading)
 
 
 def test_built_in_platforms_are_the_published_hull() -> None:
-    assert builtin_platforms() == ("volturnus-s", "volturnus-s-focal")
+    kinds = ("iti-barge", "oc3-hywind", "oc4-deepcwind", "ship-section", "volturnus-s", "volturnus-s-focal")
+    assert builtin_platforms() == kinds
     platform = load_platform("VolturnUS-S")
     mass, centre, inertia = platform.rigid_body.combined()
     assert mass == 20093e3

@@ -59,7 +59,7 @@ def test_missing_files_folders_and_names(tmp_path: Path) -> None:
         (tmp_path / "none.yaml", "expected a YAML file, found no such file"),
         (str(tmp_path / "none"), "expected a YAML file, found no such file"),
         ("a\0.yaml", "expected a readable YAML file"),
-        ("volturnus", "(volturnus-s, volturnus-s-focal), found 'volturnus'. Did you mean 'volturnus-s'?"),
+        ("volturnus", "volturnus-s, volturnus-s-focal), found 'volturnus'. Did you mean 'volturnus-s'?"),
     ):
         with pytest.raises(InputError) as caught:
             load_platform(path)
