@@ -55,6 +55,15 @@ def percent(ratio: float | None) -> str:
     return f"{100 * ratio:.2g} %" if abs(ratio) < 0.995 else f"{100 * ratio:.0f} %"
 
 
+def signed_percent(ratio: float | None) -> str:
+    """A ratio in whole per cent with its sign; a dash for none."""
+    if ratio is None:
+        return "–"
+    if 100 * ratio >= LARGEST_PERCENT:
+        return f"> {LARGEST_PERCENT:g} %"
+    return f"{whole:+d} %" if (whole := round(100 * ratio)) else "0 %"
+
+
 def percent_span(ratios: Sequence[float]) -> str:
     """The smallest and the largest of some ratios in per cent: `0.4-1.7 %`, or `1.7 %` where they read alike.
 

@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatter
 
-from calibration.formatting import number, readable_unit
+from calibration.decay_analysis.linear_quadratic import classical
+from calibration.formatting import number, readable_unit, signed_percent
 from calibration.result import Calibration, Estimate, Series, TestFit
 from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.dynamics.response import Cycles, decay_cycles
@@ -41,14 +42,20 @@ def figures(calibration: Calibration) -> Iterator[tuple[str, str, Figure]]:
 
 
 _PARAMETERS = "Where every parameter started and where it ended, with two standard deviations."
-_DECAY = "Decays in {dof}: logarithmic decrement per cycle and period against amplitude; triangles lie beyond the edge."
+_DECAY = (
+    "Decays in {dof}: logarithmic decrement per cycle and period against amplitude; triangles lie beyond the edge. Dashed: "
+    "linear and quadratic (P-Q) damping fitted to the record alone."
+)
 _TEST = (
     "Test {id}: measured and simulated {channel}; their difference over a grey band of two standard deviations of "
     "the noise; the other channels."
 )
 
 
-_SPECTRA = "Test {id}: spectra of the motions, measured and simulated before and after calibration; bands shaded."
+_SPECTRA = (
+    "Test {id}: spectra of the motions, measured and simulated before and after calibration; bands shaded, with the error of "
+    "the energy in each after calibration."
+)
 
 
 def spectra_figure(test: TestFit) -> Figure:
@@ -60,6 +67,7 @@ def spectra_figure(test: TestFit) -> Figure:
         channel, top, before = series.channel, 0.0, test.start.get(series.channel)
         for shade, band in zip(BAND_COLOURS, test.bands[channel].values()):
             ax.axvspan(band.low, band.high, color=shade, lw=0, zorder=0.5)
+            write_band_error(ax, band.low, band.high, band.after)
         rows = [("measured", series.measured, MEASURED, 1.5), ("calibrated", series.simulated, SIMULATED, 0.9)]
         for label, values, colour, size in [*rows, *([("before", before, BEFORE, 0.9)] if before is not None else [])]:
             found = power_spectrum(test.time, for_people(channel, values))
@@ -73,6 +81,13 @@ def spectra_figure(test: TestFit) -> Figure:
     axes[-1].set_xlabel("Frequency (Hz)")
     header(figure, f"{test.id} ({_USE[test.use]})", artists)
     return figure
+
+
+def write_band_error(ax: Axes, low: float, high: float, error: float) -> None:
+    """Write the relative error of the energy in a band at the foot of the band."""
+    if np.isfinite(error):
+        where: dict[str, Any] = {"transform": ax.get_xaxis_transform(), "ha": "center", "va": "bottom", "fontsize": "small"}
+        ax.text(0.5 * (low + high), 0.03, signed_percent(error), **where)
 
 
 def test_figure(test: TestFit) -> Figure:
@@ -116,11 +131,19 @@ def compare_motions(
 
 
 class DecayCycles(NamedTuple):
-    """Half cycles of one test, amplitudes in m or deg: measured, calibrated, before; `clear`: well above the noise."""
+    """Half cycles of one test, amplitudes in m or deg.
+
+    Attributes:
+        measured, simulated, before: Half cycles of the record, of the calibrated model, of the model before.
+        fit: (2, 2) amplitudes and decrements at the ends of the line of linear and quadratic (P-Q) damping; None without one.
+        clear: Amplitude that is well above the noise.
+        held: Whether the test is held out.
+    """
 
     measured: Cycles
     simulated: Cycles
     before: Cycles
+    fit: np.ndarray | None
     clear: float
     held: bool
 
@@ -139,6 +162,7 @@ class DecayCycles(NamedTuple):
             cycles(main.measured),
             cycles(main.simulated),
             cycles(test.start.get(main.channel)),
+            _fitted_line(test.time, main),
             CLEAR_AMPLITUDE * float(for_people(main.channel, main.noise)),
             test.use != "fit",
         )
@@ -147,6 +171,17 @@ class DecayCycles(NamedTuple):
         """A quantity of the cycles that are clear of the noise; of the largest ones where none is."""
         values, size = getattr(cycles, quantity), cycles.amplitude
         return values[(size >= min(self.clear, 0.3 * size.max(initial=0.0))) & np.isfinite(values)]
+
+
+def _fitted_line(time: np.ndarray, series: Series) -> np.ndarray | None:
+    """Decrement per cycle of linear and quadratic damping, T p / 2 + 8/3 q a, at the smallest and largest amplitude a."""
+    try:
+        found = classical(time, series.measured, series.noise)
+    except ValueError:  # too few cycles
+        return None
+    ends = found.half_cycles.amplitude[[-1, 0]]
+    decrement = 0.5 * found.fit.period * found.fit.linear.value + 8 / 3 * found.fit.quadratic.value * ends
+    return np.stack([for_people(series.channel, ends), decrement])
 
 
 def decay_figure(dof: str, tests: list[TestFit]) -> Figure | None:
@@ -168,13 +203,15 @@ def decay_figure(dof: str, tests: list[TestFit]) -> Figure | None:
             for cycles, colour, label in ((decay.simulated, SIMULATED, "calibrated"), (decay.before, BEFORE, "before")):
                 order = np.argsort(cycles.amplitude)
                 artists[label] = ax.plot(cycles.amplitude[order], getattr(cycles, quantity)[order], color=colour)[0]
+            if quantity == "decrement" and decay.fit is not None:
+                artists["P-Q fit"] = ax.plot(*decay.fit, color=MEASURED, lw=0.7, ls=(0, (5, 3)))[0]
         ax.set_ylim(low, high)
     if amplitudes.min() < 0.4 * amplitudes.max():
         axes[0].set_xlim(0.0, 1.08 * amplitudes.max())
     axes[0].set_ylabel("Decrement\nper cycle (-)")
     axes[1].set_ylabel("Period (s)")
     axes[1].set_xlabel(f"Amplitude of {dof} ({unit_of(dof)})")
-    names = [name for name in ("measured", "held out", "calibrated", "before") if name in artists]
+    names = [name for name in ("measured", "held out", "P-Q fit", "calibrated", "before") if name in artists]
     header(figure, f"Decays in {dof}", {name: artists[name] for name in names})
     return figure
 

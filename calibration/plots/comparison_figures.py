@@ -8,8 +8,9 @@ from matplotlib.figure import Figure
 
 from calibration.campaign.signals import wave_height
 from calibration.formatting import number
+from calibration.plots.calibration_figures import write_band_error
 from calibration.residuals.measured_seas import SeaTest
-from calibration.residuals.sea_errors import channels, density, moving
+from calibration.residuals.sea_errors import channels, density, in_bands, moving
 from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.files import safe_name
 from jaxhydro.plots.style import MEASURED, SIMULATED, header, stack
@@ -25,7 +26,8 @@ def figures(tests: Sequence[SeaTest]) -> Iterator[tuple[str, str, Figure]]:
     """File name, caption and figure, one after the other. Call within `plots.style.style()`."""
     for test in tests:
         name = safe_name(test.fit.id)
-        yield f"spectra-{name}.png", f"Test {test.fit.id}: spectra, measured and simulated; bands shaded.", spectra_figure(test)
+        caption = f"Test {test.fit.id}: spectra, measured and simulated; bands shaded, with the error of the energy in each."
+        yield f"spectra-{name}.png", caption, spectra_figure(test)
         caption = f"Test {test.fit.id}: {EXCERPT_LENGTH:g} s about the highest crest, measured and simulated."
         yield f"excerpt-{name}.png", caption, excerpt_figure(test)
 
@@ -43,10 +45,12 @@ def spectra_figure(test: SeaTest, names: Sequence[str] | None = None, title: str
     shown = ["wave", *moving(test)] if names is None else list(names)
     figure, axes = stack([0.95] * len(shown))
     artists: dict[str, Artist] = {}
+    errors = in_bands(test) if test.fit.kind == "irregular" else {}
     for ax, name in zip(axes, shown):
         for band, (low, high) in bands_of(name, test.peak_period).items() if test.fit.kind == "irregular" else ():
             label, colour = ("low frequency", LOW_BAND) if band == "low_frequency" else ("wave frequency", WAVE_BAND)
             artists[label] = ax.axvspan(low, high, color=colour, lw=0, zorder=0.5)
+            write_band_error(ax, low, high, errors[name][band].error)
         top = 0.0
         for label, x, colour, width in zip(("measured", "simulated"), both[name], (MEASURED, SIMULATED), (1.4, 0.8)):
             found = density(test, x)

@@ -11,8 +11,7 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.signals import dominant_period, wave_height
-from calibration.formatting import counted, listed, number
-from calibration.report.tables import signed_percent
+from calibration.formatting import counted, listed, number, signed_percent
 from calibration.vocabulary import KINDS, USE, Rows
 from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.statics import Modes, equilibrium

@@ -8,7 +8,7 @@ from calibration.campaign.checks import Finding
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
-from calibration.formatting import LARGEST_PERCENT, counted, number, percent, readable_unit, with_deviation
+from calibration.formatting import counted, number, percent, readable_unit, signed_percent, with_deviation
 from calibration.result import Calibration
 from calibration.results.calibration_file import CalibrationFile, ChannelError, Parameter
 from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
@@ -110,15 +110,6 @@ def bands(saved: CalibrationFile) -> Rows:
         for band, both in row.items()
     ]
     return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
-
-
-def signed_percent(ratio: float | None) -> str:
-    """A ratio in whole per cent with its sign; a dash for none."""
-    if ratio is None:
-        return "–"
-    if 100 * ratio >= LARGEST_PERCENT:
-        return f"> {LARGEST_PERCENT:g} %"
-    return f"{whole:+d} %" if (whole := round(100 * ratio)) else "0 %"
 
 
 def outcome_sentence(saved: CalibrationFile) -> str:
