@@ -1,4 +1,4 @@
-"""Figures of tests in waves: spectra with their bands, and an excerpt of the record."""
+"""Figures of tests in waves: spectra with their bands, motion per metre of wave, and an excerpt of the record."""
 
 from collections.abc import Iterator, Sequence
 
@@ -12,12 +12,14 @@ from calibration.plots.calibration_figures import write_band_error
 from calibration.residuals.measured_seas import SeaTest
 from calibration.residuals.sea_errors import channels, density, in_bands, moving
 from jaxhydro.analysis.sea_statistics import bands_of
+from jaxhydro.analysis.spectral import transfer_function
 from jaxhydro.files import safe_name
 from jaxhydro.plots.style import MEASURED, SIMULATED, header, stack
 from jaxhydro.units import unit_of
 
 MAX_FREQUENCY = 0.2  # Hz, that spectra are drawn to; of waves shorter than 10 s 2.5 times their peak
 DECADES = 4.5  # of a spectrum, under its largest value
+MIN_WAVE_DENSITY = 0.02  # of the waves' largest density, where motions per metre of wave are drawn
 EXCERPT_LENGTH = 400.0  # s about the highest crest
 LOW_BAND, WAVE_BAND = "#ece3cf", "#dbe9ee"
 
@@ -28,6 +30,12 @@ def figures(tests: Sequence[SeaTest]) -> Iterator[tuple[str, str, Figure]]:
         name = safe_name(test.fit.id)
         caption = f"Test {test.fit.id}: spectra, measured and simulated; bands shaded, with the error of the energy in each."
         yield f"spectra-{name}.png", caption, spectra_figure(test)
+        if (figure := response_figure(test)) is not None:
+            caption = (
+                f"Test {test.fit.id}: motion per metre of wave (RAO), and the share of the motion that is linear in the waves "
+                "(coherence)."
+            )
+            yield f"rao-{name}.png", caption, figure
         caption = f"Test {test.fit.id}: {EXCERPT_LENGTH:g} s about the highest crest, measured and simulated."
         yield f"excerpt-{name}.png", caption, excerpt_figure(test)
 
@@ -67,6 +75,37 @@ def spectra_figure(test: SeaTest, names: Sequence[str] | None = None, title: str
     axes[-1].set_xlabel("Frequency (Hz)")
     order = ["measured", "simulated", "low frequency", "wave frequency"]
     header(figure, title or _title(test), {label: artists[label] for label in order if label in artists}, 2)
+    return figure
+
+
+def response_figure(test: SeaTest) -> Figure | None:
+    """Response amplitude operators of what moves, with their coherence, where the waves have energy.
+
+    None for regular waves and for a record that is too short.
+    """
+    both, shown = channels(test), moving(test)
+    if test.fit.kind != "irregular" or not shown:
+        return None
+    try:
+        found = {
+            name: [transfer_function(test.fit.time, wave, x) for wave, x in zip(both["wave"], both[name])] for name in shown
+        }
+    except ValueError:  # fewer than two segments
+        return None
+    energy = np.interp(found[shown[0]][0].frequency, *density(test, test.wave)[:2])
+    gap = np.where(energy > MIN_WAVE_DENSITY * energy.max(), 0.0, np.nan)
+    figure, axes = stack([0.8, 0.4] * len(shown))
+    artists: dict[str, Artist] = {}
+    for i, name in enumerate(shown):
+        for label, one, colour, width in zip(("measured", "simulated"), found[name], (MEASURED, SIMULATED), (1.4, 0.8)):
+            artists[label] = axes[2 * i].plot(one.frequency, one.amplitude + gap, color=colour, lw=width)[0]
+            axes[2 * i + 1].plot(one.frequency, one.coherence + gap, color=colour, lw=width)
+        axes[2 * i].set_ylim(bottom=0)
+        axes[2 * i].set_ylabel(f"{name.capitalize()}\n({unit_of(name)}/m)")
+        axes[2 * i + 1].set_ylim(0, 1.05)
+        axes[2 * i + 1].set_ylabel("Coh. (-)")
+    axes[-1].set_xlabel("Frequency (Hz)")
+    header(figure, _title(test), artists)
     return figure
 
 
