@@ -382,6 +382,7 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
         (["ab", "ac", "ab"], "ab", ["", "", ""]),  # two sets in turn: what two of three have
         (["ab", "abc", "bd", "abe", "abf", "abg"], "ab", ["", "", "", "ab", "ab", "ab"]),  # the last round: what most have
         (["a", "ab", "bc", "abd", "abd"], "abd", ["", "", "", "ab", "ab"]),  # beside what stays the set stays
+        (["l", "bl", "ab", "abd", "abd"], "abd", ["", "", "", "b", "ab"]),  # the laboratory alone, at first, does not count
         (["a", ""], "a", ["", ""]),  # nothing at all: verification decides
     ],
 )
@@ -389,11 +390,15 @@ def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(select
     class Effect(NamedTuple):
         name: str
 
+        @property
+        def effect(self) -> str:
+            return "sensor_lag" if self.name == "l" else self.name
+
     @dataclass(frozen=True)
     class State:
         chosen: tuple[Effect, ...]
 
-    names, rounds, asked = "abcdefg", iter(selected), []
+    names, rounds, asked = "abcdefgl", iter(selected), []
 
     def subset(chosen: str) -> Any:
         return SimpleNamespace(variants=tuple(names.index(name) for name in chosen), evidence=float(len(chosen)))

@@ -185,6 +185,11 @@ def test_a_required_effect_is_in_the_answer_and_keeps_its_probability() -> None:
     found = one(required=frozenset({"effect 8"}))
     assert set(found.names(found.best)) == {"effect 5", "effect 8"}
     assert found.probability()["effect 5"] > 0.95 and found.probability().get("effect 8", 0.0) < 0.5
+    at_end = replace(model, upper=np.where(np.arange(12) == 8, 1e-3, 1e3), lower=np.where(np.arange(12) == 8, -1e-3, -1e3))
+    found = JointSelection(
+        at_end, range(2), selection(model).variants, np.arange(POOLS), required=frozenset({"effect 8"})
+    ).run()
+    assert found.names(found.best) == ("effect 5",)  # no set of several has one at the end of its range
     found = one(required=frozenset({"effect 5"}), matters=lambda before, after: False)
     assert found.names(found.best) == ("effect 5",)
 

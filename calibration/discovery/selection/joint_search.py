@@ -14,12 +14,13 @@ from calibration.discovery.acceptance import (
 from calibration.discovery.broyden_fit import far_step
 from calibration.discovery.diagnosis import Score
 from calibration.discovery.effect_fits import ReportStage
+from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.search import Search
-from calibration.discovery.selection.candidate_columns import CandidateColumns, linearise_candidates
+from calibration.discovery.selection.candidate_columns import LABORATORY_EFFECTS, CandidateColumns, linearise_candidates
 from calibration.discovery.selection.joint_selection import JointSelection
 from calibration.discovery.selection.study_linear_model import step_of_decays
 from calibration.discovery.selection.subsets import Subset
@@ -194,7 +195,7 @@ class JointSearch(Search):
             states.append(better)
         state, visited = states[-1], {frozenset(one.name for one in some.chosen) for some in states}
         for number in range(len(states), MAX_ROUNDS + 1):
-            sets = [frozenset(one.name for one in some.chosen) for some in states[1:]]
+            sets = whole_sets([some.chosen for some in states[1:]])
             best = self.select(state, number, majority(sets) if number > FREE_ROUNDS else frozenset())
             names = frozenset(self.columns.variants[i].name for i in best.variants)
             if not names or names == {one.name for one in state.chosen}:
@@ -228,6 +229,13 @@ class JointSearch(Search):
                 found.append(self.refit(look, (one,), f"trial of {effect_in_words(one.name)}", BEGIN))
         best = self.likeliest(*found)
         return best if self.likelihood_gain(baseline, best) > MIN_LIKELIHOOD_GAIN else None
+
+
+def whole_sets(chosen: Sequence[Sequence[Candidate]]) -> list[frozenset[str]]:
+    """Names of the effects that rounds selected, without a first round that took the laboratory's mistakes alone."""
+    sets = [frozenset(one.name for one in some) for some in chosen]
+    partial = len(sets) > 1 and all(one.effect in LABORATORY_EFFECTS for one in chosen[0])
+    return sets[1:] if partial else sets
 
 
 def majority(sets: Sequence[frozenset[str]]) -> frozenset[str]:

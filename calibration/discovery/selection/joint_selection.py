@@ -16,7 +16,7 @@ References:
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import islice, takewhile
+from itertools import chain, islice, takewhile
 
 import numpy as np
 
@@ -46,7 +46,8 @@ class JointSelection:
         told: Called with the number of subsets that were fitted.
         matters: Whether an effect matters, from the residuals without and with it; None: every effect does.
         among: Variants that may be added; None: all.
-        required: Names of effects that every answer has. They are left out in turn all the same, for their probability.
+        required: Names of effects that every answer has, unless no set with them takes part. They are left out in turn all
+            the same, for their probability.
     """
 
     def __init__(
@@ -159,7 +160,8 @@ class JointSelection:
             self.with_required(self.subset(begin))
         done: set[tuple[int, ...]] = set()
         while len(self.fitted) < MAX_SUBSETS:
-            todo = next((one for one in self.answers(EXPANDED_SUBSETS) if one.variants not in done), None)
+            ahead = chain(self.answers(EXPANDED_SUBSETS), self.best(EXPANDED_SUBSETS))
+            todo = next((one for one in ahead if one.variants not in done), None)
             if todo is None:
                 break
             done.add(todo.variants)
@@ -199,8 +201,10 @@ class JointSelection:
         return self.required <= {self.variants[i].name for i in subset.variants}
 
     def answers(self, most: int | None = None) -> Iterator[Subset]:
-        """Those of `best` that have every required effect, so many at most."""
-        return islice(filter(self.has_required, self.best()), most)
+        """Those of `best` that have every required effect and none at the end of its range, so many at most; without required
+        effects `best`."""
+        mine = (one for one in self.best() if not self.required or (self.has_required(one) and not one.at_end))
+        return islice(mine, most)
 
     def best(self, most: int | None = None) -> Iterator[Subset]:
         """The fitted subsets that take part, the most probable first, so many at most."""
