@@ -7,6 +7,7 @@ changed. Times in the messages are the file's own, in its own unit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -304,11 +305,14 @@ class _Check:
         off = spikes(values, step)
         if len(off := off[time[off + 2] - time[off - 2] < 4.5 * self.step]):  # none beside a gap
             i, more = int(off[0]), f", and {len(off) - 1} more" if len(off) > 1 else ""
+            aside = abs(values[i] - 0.5 * (values[i - 1] + values[i + 1]))
+            digits = max(5, 2 + math.ceil(math.log10(np.abs(values[i - 1 : i + 2]).max() / aside)))
+            it, before, after = (f"{value:.{digits}g}" for value in values[[i, i - 1, i + 1]])
             yield self.finding(
                 "warning",
                 channel,
                 float(time[i]),
-                f"a spike at {self.at(time[i])}, {values[i]:.5g} between {values[i - 1]:.5g} and {values[i + 1]:.5g}{more}",
+                f"a spike at {self.at(time[i])}, {it} between {before} and {after}{more}",
             )
         yield from self.drift(channel, values, grain)
 

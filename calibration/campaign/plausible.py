@@ -127,7 +127,7 @@ def _period_reason(ratio: float, scale: float) -> tuple[str, bool]:
     if scale != 1 and abs(np.log(ratio * scale**0.5)) < SCALE_TOLERANCE:
         return f"shorter by the square root of `scale`, {scale**0.5:.3g}: were times scaled down before?", True
     if scale == 1 and 1 / WRONG_PERIOD_RATIO < ratio < 1 / UNUSUAL_PERIOD_RATIO:
-        return f"a unit of time, or a `scale` of about {ratio**-2:.2g}, as model-scale records would need?", False
+        return f"a unit of time, or a `scale` of about {float(f'{ratio**-2:.2g}'):g}, as model-scale records would need?", False
     return "a unit of time, or the scale?", False
 
 

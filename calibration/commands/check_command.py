@@ -35,5 +35,8 @@ def check_campaign(path: Path, out: Path | None) -> None:
             for name, figure in figures(campaign):
                 save(figure, temporary / name)
         say(f"The hull and every record are drawn in {out}")
-    say(check_tables.verdict(campaign, compared))
+    doubts = list(check_tables.doubts(campaign, compared))
+    say(check_tables.verdict(campaign, doubts))
+    if doubts:
+        say(f"To look again: jaxhydro check {path}")
     say(f"To fit it: jaxhydro calibrate {path} --out fit")

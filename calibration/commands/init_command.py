@@ -132,7 +132,7 @@ def _about_platform(draft: CampaignDraft, folder: Path) -> str:
     return (
         f"Check {path}: it is a copy of {draft.platform}."
         if draft.own_platform
-        else (f"Edit {path}: it describes {draft.platform}. Put your platform in.")
+        else (f"Edit {path}: it describes {draft.platform}. Put your platform in, or begin with another (jaxhydro platforms).")
     )
 
 

@@ -129,8 +129,7 @@ def _at_rest(campaign: Campaign) -> Iterator[str]:
             yield f"the declared platform rests at {number(angle, 2)} deg of {name} (centre of mass, mooring)"
 
 
-def verdict(campaign: Campaign, compared: Sequence[PeriodComparison]) -> str:
-    """The answer in one sentence."""
+def verdict(campaign: Campaign, said: Sequence[str]) -> str:
+    """The answer in one sentence, with the `doubts` that there are."""
     read = f"{counted(len(campaign.records), 'test')} read"
-    said = list(doubts(campaign, compared))
     return f"{read}. Look at this first: {'; '.join(said)}." if said else f"{read}: nothing looks wrong."

@@ -203,6 +203,7 @@ def check(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for figures of the hull and of every record.")] = None,
 ) -> None:
     """Read a campaign and show what it holds: tests, natural periods beside the model's, warnings. Nothing is fitted."""
+    campaign_file(campaign)
     drawn = None if out is None else options.check_folder(out)
     from calibration.commands.check_command import check_campaign
 
@@ -247,6 +248,7 @@ def diagnose(
     it; where there are none, blocks of the fitted ones are left out in turn. Nothing in the campaign has to name an effect. The
     answer may be that nothing is missing, or that something is and none of the known effects explains it.
     """
+    campaign_file(campaign)
     out = options.results_folder(out, "diagnosis.json", campaign)
     from calibration.commands.diagnose_command import diagnose_campaign
 
@@ -271,6 +273,7 @@ def uncertainty(
     What is left of a fit is mostly the model's own error, and lasts from sample to sample: it is coloured. Intervals of the
     fit's covariance allow for it; on request also profiles of the likelihood, a bootstrap, and draws from the posterior.
     """
+    campaign_file(campaign)
     out = options.results_folder(out, "uncertainty.json", campaign)
     from calibration.commands.uncertainty_command import quantify
 
@@ -359,6 +362,7 @@ def _calibrate(
     campaign: Path, out: Path | None, figures: bool, truth: dict[str, float] | None = None, tests: str | None = None, **how: Any
 ) -> None:
     """Calibrate; where the truth is known, compare with it and make the report page."""
+    campaign_file(campaign)
     out = options.results_folder(out, "calibration.json", campaign)
     from calibration.commands import calibrate_command as command
 

@@ -127,6 +127,7 @@ def progress() -> Iterator[Callable[[Any], None]]:
 
     if not shown.is_terminal:
         stages: list[str] = []
+        shown.print(Text("preparing; programs are compiled where they are new"), soft_wrap=True)
 
         def note(now: Any) -> None:
             nonlocal furthest

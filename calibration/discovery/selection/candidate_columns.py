@@ -148,9 +148,9 @@ class _Columns:
         return range(begin, len(self.directions))
 
     def add(self, one: Candidate, columns: Sequence[int], values: Mapping[str, float]) -> None:
-        """Add a candidate at values of its shapes."""
+        """Add a candidate at values of its shapes, which share its prior odds."""
         laboratory = one.effect in LABORATORY_EFFECTS
-        odds = LABORATORY_LOG_ODDS if laboratory else PHYSICS_LOG_ODDS
+        odds = (LABORATORY_LOG_ODDS if laboratory else PHYSICS_LOG_ODDS) - math.log(max(len(one.grid), 1))
         self.variants.append(Variant(one.name, tuple(columns), odds, laboratory))
         self.values.append(values)
 
