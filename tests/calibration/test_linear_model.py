@@ -190,6 +190,10 @@ def test_a_required_effect_is_in_the_answer_and_keeps_its_probability() -> None:
         at_end, range(2), selection(model).variants, np.arange(POOLS), required=frozenset({"effect 8"})
     ).run()
     assert found.names(found.best) == ("effect 5",)  # no set of several has one at the end of its range
+    many = linear_model(16, {i: 1.0 + 0.2 * i for i in range(4, 12)})
+    chosen = JointSelection(many, range(2), selection(many).variants, np.arange(POOLS), required=frozenset({"effect 4"}))
+    found = chosen.run(range(3, 11))  # as many as may be, without the required one
+    assert found.best.variants == tuple(range(2, 10)) and max(len(one.variants) for one in found.subsets) == MAX_EFFECTS
     found = one(required=frozenset({"effect 5"}), matters=lambda before, after: False)
     assert found.names(found.best) == ("effect 5",)
 

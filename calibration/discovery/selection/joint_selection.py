@@ -154,6 +154,8 @@ class JointSelection:
         Args:
             begin: Variants of a subset to begin with, beside none.
         """
+        if self.required:  # what is added to them has room
+            begin = [i for i in begin if self.variants[i].name in self.required]
         self.temper(self.grown(self.with_required(self.subset(begin))))
         self.subset(())
         if begin or self.required:
