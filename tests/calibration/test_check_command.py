@@ -37,7 +37,8 @@ def test_periods_are_those_of_the_records(demo):
 
 def test_a_sound_campaign_is_said_to_be_sound(demo):
     compared = compare_periods(demo.records, natural_modes(demo.model))
-    assert verdict(demo, compared) == "9 tests read: nothing looks wrong."
+    assert verdict(demo, list(doubts(demo, compared))) == "9 tests read: nothing looks wrong."
+    assert verdict(demo, ["this", "that"]) == "9 tests read. Look at this first: this; that."
 
 
 def test_a_period_far_off_is_named(demo):

@@ -176,11 +176,11 @@ def test_xla_flags_of_the_user_stay(untouched: pytest.MonkeyPatch) -> None:
     assert os.environ["XLA_FLAGS"] == "--xla_dump_to=x"
 
 
-def test_float32_is_told(untouched: pytest.MonkeyPatch) -> None:
+def test_float32_is_told(untouched: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A model in single precision would be wrong quietly."""
     with pytest.raises(RuntimeError, match="JAX_ENABLE_X64=0 and JAXHYDRO_X64=0"):
         jh.load_model("volturnus-s")
-    text = run("platforms", status=2)
+    text = run("simulate", "volturnus-s", "--release", "heave=1", "--out", tmp_path / "decay", status=2)
     assert text.startswith("jaxhydro: jaxhydro needs float64. Remove JAX_ENABLE_X64=0")
     jax.config.update("jax_enable_x64", True)
     need_float64()
