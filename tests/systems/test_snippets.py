@@ -11,8 +11,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = ("README.md", *(f"docs/guide/{name}.md" for name in ("python", "own-effect", "waves", "uncertainty", "sweeps")))
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 # what stands for the reader's own, or takes a whole job: of such blocks the imports are tried
-SHORTER = {"seconds=60": "seconds=5", "likely, 200": "likely, 20"}
-NOT_RUN = ("my-campaign", "sweep.yaml", "SLURMCluster", "diagnose(campaign.model, campaign)\n")
+SHORTER = {"seconds=60": "seconds=5"}
+NOT_RUN = ("likely", "my-campaign", "sweep.yaml", "SLURMCluster", "diagnose(campaign.model, campaign)\n")
 
 
 def blocks(page: str) -> list[str]:
