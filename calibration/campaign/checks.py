@@ -305,8 +305,8 @@ class _Check:
         off = spikes(values, step)
         if len(off := off[time[off + 2] - time[off - 2] < 4.5 * self.step]):  # none beside a gap
             i, more = int(off[0]), f", and {len(off) - 1} more" if len(off) > 1 else ""
-            aside = abs(values[i] - 0.5 * (values[i - 1] + values[i + 1]))
-            digits = max(5, 2 + math.ceil(math.log10(np.abs(values[i - 1 : i + 2]).max() / aside)))
+            height = abs(values[i] - 0.5 * (values[i - 1] + values[i + 1]))
+            digits = max(5, 2 + math.ceil(math.log10(np.abs(values[i - 1 : i + 2]).max() / height)))
             it, before, after = (f"{value:.{digits}g}" for value in values[[i, i - 1, i + 1]])
             yield self.finding(
                 "warning",

@@ -355,7 +355,7 @@ def platforms() -> None:
 
     table("Built-in platforms", HEADS, [particulars(name) for name in builtin_platforms()], 2)
     say("Copy one to edit: jaxhydro init FOLDER --platform NAME")
-    say("Let one go: jaxhydro simulate NAME --release heave=1")
+    say("Release one from 1 m of heave: jaxhydro simulate NAME --release heave=1")
 
 
 def _calibrate(

@@ -127,7 +127,7 @@ def progress() -> Iterator[Callable[[Any], None]]:
 
     if not shown.is_terminal:
         stages: list[str] = []
-        shown.print(Text("preparing; programs are compiled where they are new"), soft_wrap=True)
+        shown.print(Text("preparing; a first run compiles its programs, which takes longer"), soft_wrap=True)
 
         def note(now: Any) -> None:
             nonlocal furthest

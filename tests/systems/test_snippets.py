@@ -10,8 +10,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = ("README.md", *(f"docs/guide/{name}.md" for name in ("python", "own-effect", "waves", "uncertainty", "sweeps")))
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-# what stands for the reader's own, or takes a whole job: of such blocks the imports are tried
 SHORTER = {"seconds=60": "seconds=5"}
+# what stands for the reader's own, or takes a whole job: of such blocks the imports are tried
 NOT_RUN = ("likely", "my-campaign", "sweep.yaml", "SLURMCluster", "diagnose(campaign.model, campaign)\n")
 
 

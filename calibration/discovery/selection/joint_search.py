@@ -54,7 +54,7 @@ class JointSearch(Search):
         """Progress after so many rounds."""
         return BEGIN + (END - BEGIN) * min(number / USUAL_ROUNDS, 1.0)
 
-    def select(self, state: FitState, number: int, required: frozenset[str] = frozenset()) -> Subset:
+    def select(self, state: FitState, number: int, required: frozenset[str]) -> Subset:
         """Linearise a state along all candidates, and select.
 
         The laboratory comes first: where mistakes of it are among the effects that the declared model lacks, those alone are

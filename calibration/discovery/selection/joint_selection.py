@@ -158,8 +158,7 @@ class JointSelection:
             begin = [i for i in begin if self.variants[i].name in self.required]
         self.temper(self.grown(self.with_required(self.subset(begin))))
         self.subset(())
-        if begin or self.required:
-            self.with_required(self.subset(begin))
+        self.with_required(self.subset(begin))
         done: set[tuple[int, ...]] = set()
         while len(self.fitted) < MAX_SUBSETS:
             ahead = chain(self.answers(EXPANDED_SUBSETS), self.best(EXPANDED_SUBSETS))
@@ -170,9 +169,8 @@ class JointSelection:
             stop_if_asked()
             self.neighbours(todo)
             self.told(len(self.fitted))
-        (best,) = self.best(1)
-        subsets = tuple(takewhile(lambda one: one.evidence > best.evidence + MIN_LOG_POSTERIOR, self.best()))
-        return Selection(subsets, self.variants, bagged_posterior(subsets, self.series, self.model.used), tuple(self.answers()))
+        subsets, answers = probable(self.best()), probable(self.answers())
+        return Selection(subsets, self.variants, bagged_posterior(subsets, self.series, self.model.used), answers)
 
     def with_required(self, subset: Subset) -> Subset:
         """A subset with the required effects that it lacks, each in its most promising variant."""
@@ -203,12 +201,23 @@ class JointSelection:
         return self.required <= {self.variants[i].name for i in subset.variants}
 
     def answers(self, most: int | None = None) -> Iterator[Subset]:
-        """Those of `best` that have every required effect and none at the end of its range, so many at most; without required
-        effects `best`."""
-        mine = (one for one in self.best() if not self.required or (self.has_required(one) and not one.at_end))
-        return islice(mine, most)
+        """Those of `best` that have every required effect and none at the end of its range, so many at most; none where nothing
+        is required."""
+        mine = (one for one in self.by_evidence() if self.required and self.has_required(one) and not one.at_end)
+        return islice(filter(self.takes_part, mine), most)
 
     def best(self, most: int | None = None) -> Iterator[Subset]:
         """The fitted subsets that take part, the most probable first, so many at most."""
-        ordered = sorted(self.fitted.values(), key=lambda one: -one.evidence)
-        return islice((one for one in ordered if self.takes_part(one)), most)
+        return islice(filter(self.takes_part, self.by_evidence()), most)
+
+    def by_evidence(self) -> list[Subset]:
+        """The fitted subsets, the most probable first."""
+        return sorted(self.fitted.values(), key=lambda one: -one.evidence)
+
+
+def probable(ordered: Iterator[Subset]) -> tuple[Subset, ...]:
+    """Of subsets in order of evidence, those that are not far less probable than the first."""
+    first = next(ordered, None)
+    if first is None:
+        return ()
+    return (first, *takewhile(lambda one: one.evidence > first.evidence + MIN_LOG_POSTERIOR, ordered))
