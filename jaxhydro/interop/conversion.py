@@ -1,0 +1,45 @@
+"""What a reader of another program's model hands over: a platform file and what became of each item of the source."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+
+class Treatment(StrEnum):
+    """What became of an item of the source."""
+
+    TAKEN = "taken"
+    APPROXIMATED = "approximated"
+    LEFT_OUT = "left out"
+
+
+@dataclass(frozen=True)
+class ConvertedItem:
+    """One item of the source.
+
+    Attributes:
+        source: File and key, such as `HydroDyn.dat: Simple hydrodynamic coefficients`.
+        treatment: What became of it.
+        meaning: In a sentence: what it is in the platform file, what was assumed, or why it was left out.
+    """
+
+    source: str
+    treatment: Treatment
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """A platform read from another program's files.
+
+    Attributes:
+        platform: Contents of `platform.yaml`, as plain dictionaries, lists, numbers and words.
+        items: What became of each item of the source.
+        files: Files that `platform.yaml` refers to: name beside it -> file to copy.
+    """
+
+    platform: dict[str, Any]
+    items: tuple[ConvertedItem, ...]
+    files: Mapping[str, Path] = field(default_factory=dict)
