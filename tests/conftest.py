@@ -20,6 +20,14 @@ import jaxhydro  # noqa: E402, F401
 
 os.environ.pop("COLUMNS", None)  # of a pytest worker: tables are as wide as where there is no terminal
 
+
+def pytest_configure(config):
+    """Programs of small tests run for less time than their optimisation takes. Slow tests run optimised programs."""
+    if not {"slow", "validate"} & set(config.option.markexpr.replace("not slow", "").replace("not validate", "").split()):
+        flags = "--xla_backend_optimization_level=0 --xla_llvm_disable_expensive_passes=true"
+        os.environ["XLA_FLAGS"] = f"{flags} --xla_cpu_parallel_codegen_split_count=1 {os.environ.get('XLA_FLAGS', '')}"
+
+
 jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)  # tests compile thousands of small programs
 
 

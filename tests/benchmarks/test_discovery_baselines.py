@@ -17,6 +17,8 @@ from benchmarks.evidence.common import DEMO
 from calibration.discovery.latent_force.recover_force import windows
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest, filtered
 
+pytestmark = pytest.mark.slow
+
 MASS, STIFFNESS, DAMPING = 3e7, 6e4, 8e4  # kg, N/m, N s/m: a period of 140 s
 FRICTION, STEP = 5e3, 0.5  # N, s
 
@@ -96,7 +98,6 @@ def test_the_hysteretic_term_is_that_of_bouc_and_wen():
     assert z[499] == pytest.approx(1 - np.exp(-0.2 * 4.99 / 0.5), abs=2e-3) and z[-1] == pytest.approx(z[499], abs=2e-3)
 
 
-@pytest.mark.slow
 def test_forces_of_a_campaign_are_reconstructed(tmp_path: Path):
     """Of the embedded decays: the fit's own errors without a force, smaller ones with the force; kept for another method."""
     kept = tmp_path / "forces" / "demo.pickle"

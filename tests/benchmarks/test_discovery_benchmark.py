@@ -46,6 +46,7 @@ def test_names_are_stable_numbers():
     assert all(Case.of(case.name) == case for case in cases())
 
 
+@pytest.mark.slow
 def test_campaigns_are_made_without_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
     """In folders whose files do not say what is missing; what is there is not made again."""
     monkeypatch.setattr(tank, "DURATIONS", SHORT)

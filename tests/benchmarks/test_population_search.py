@@ -14,6 +14,8 @@ from calibration.fitting.progress import Progress
 from calibration.global_search.run_search import Found, SearchInterrupted, run, set_up_search
 from calibration.global_search.task import Budget, Task
 
+pytestmark = pytest.mark.slow
+
 # one size of batch, CMA-ES's apart: less to compile
 CHOSEN: dict[str, PopulationSearch] = {
     one.name: one for one in (CMAES(), Genetic(population=33), DifferentialEvolution(population=11))

@@ -248,6 +248,7 @@ def test_mistakes_in_the_manifest_are_told() -> None:
 # residuals
 
 
+@pytest.mark.slow
 def test_normal_equations_are_those_of_the_plain_residuals(ship_campaign: Campaign) -> None:
     """Cost, gradient and Gauss-Newton matrix, and a damped step, against the Jacobian of all residuals in a window."""
     problem, records = posed(ship_campaign)
@@ -358,6 +359,7 @@ def test_what_no_record_touches_is_as_wide_as_its_prior() -> None:
 # fits: the ship
 
 
+@pytest.mark.slow
 def test_the_truth_is_within_three_standard_deviations(ship) -> None:
     result, _ = ship
     assert result.converged and set(result.parameters) == set(SHIP_TRUE)
@@ -428,6 +430,7 @@ def test_interruption_before_the_first_iteration(ship_campaign: Campaign, monkey
     assert caught.value.partial is None
 
 
+@pytest.mark.slow
 def test_twenty_far_starts_all_arrive(ship_campaign: Campaign, ship) -> None:
     problem, records = posed(ship_campaign)
     random, objectives = np.random.default_rng(11), []
@@ -495,6 +498,7 @@ def heave(tmp_path_factory: pytest.TempPathFactory) -> tuple[Calibration, Calibr
     return calibrate(load_campaign(twins[0])), calibrate(load_campaign(twins[1]))
 
 
+@pytest.mark.slow
 def test_a_zeroed_record_is_measured_from_the_equilibrium(heave) -> None:
     result, _ = heave
     test = result.tests[0]

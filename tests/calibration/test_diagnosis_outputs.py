@@ -171,6 +171,7 @@ def nothing(**changes: Any) -> Diagnosis:
     return replace(fake_diagnosis(), **{**less, **changes})
 
 
+@pytest.mark.slow
 def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_path: Path) -> None:
     """Nothing missing; no tests at all; numbers that are none; effects twice, of nothing that moves; many rounds."""
     read_diagnosis(write_diagnosis(nothing(), tmp_path / "a"))
@@ -256,6 +257,7 @@ def test_an_old_result_stays_when_plotting_fails(result, tmp_path, monkeypatch, 
     assert contents(tmp_path) == before and not (tmp_path / "other").exists()
 
 
+@pytest.mark.slow
 def test_a_new_result_replaces_the_old_one_and_nothing_else(result: Diagnosis, tmp_path: Path) -> None:
     folder = write_diagnosis(result, tmp_path / "out")
     write_report(folder)

@@ -25,6 +25,8 @@ from calibration.parameters.space import VAGUE_DEVIATION, parameter_space
 from calibration.uncertainty.further_tests import decay_information, effective_noise, expected_information, rank_tests
 from jaxhydro.dynamics.statics import linearised
 
+pytestmark = pytest.mark.slow
+
 PLATFORM = jh.__path__[0] + "/campaigns/volturnus-s-decays/platform.yaml"
 NOISE, LENGTH = 0.01, 300.0  # m, s
 
@@ -315,7 +317,6 @@ def test_the_information_of_a_made_decay_is_that_of_the_fitted_one(surge) -> Non
     np.testing.assert_allclose(second[:3], first[:3], rtol=0.03)
 
 
-@pytest.mark.slow
 def test_a_pitch_decay_is_worth_more_than_another_surge_decay(surge) -> None:
     fit, tests, found, model = surge
     noise = effective_noise(fit, tests) | {"pitch": math.radians(0.01)}

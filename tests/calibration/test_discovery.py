@@ -144,6 +144,7 @@ def found_in(campaign, **how):
     return diagnose(campaign.model, campaign, **how)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("torque", "expected", "left"),  # `left`: share of the held-out decay's error
     [

@@ -70,6 +70,7 @@ def same(one, other):
     return one is other or one == other
 
 
+@pytest.mark.slow
 def test_what_was_reached_is_read_back_to_the_last_bit(written):
     again, told = fresh(written.campaign), []
     (state,) = load_checkpoint(written.path, again, told.append)

@@ -40,6 +40,7 @@ def with_motion(folder: Path, column: int, change: Callable[[np.ndarray], np.nda
     return folder
 
 
+@pytest.mark.slow
 def test_a_platform_that_does_not_float_is_told_with_its_file(tmp_path):
     """A mass in tonnes: where it says so, before anything is simulated."""
     folder = stated(tmp_path / "campaign")

@@ -51,6 +51,7 @@ def true_objective(campaign: Campaign) -> float:
     return fit.decays.objective()
 
 
+@pytest.mark.slow
 def test_a_search_finds_the_coefficients(campaign: Campaign) -> None:
     one = search(campaign, starts=STARTS, seed=1, budget=ENOUGH)
     assert one.method == "multistart" and one.ended == "reached"
@@ -72,6 +73,7 @@ def check_history(one: Found) -> None:
     assert history.until(0.5 * one.objective) is None
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_search_and_leaves_others_chance_alone(campaign: Campaign) -> None:
     def state() -> np.ndarray:
         return np.random.get_state()[1].copy()  # noqa: NPY002

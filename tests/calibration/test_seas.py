@@ -110,6 +110,7 @@ def results(made, tmp_path_factory):
     return out
 
 
+@pytest.mark.slow
 def test_a_made_run_comes_back(results):
     """Scale, gauge off the origin, sensors' offsets, an axis turned round, rounded times, windows of one run."""
     found = json.loads((results / "comparison.json").read_text())
@@ -290,6 +291,7 @@ def test_bands():
 # measured
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not FOCAL.is_dir(), reason=f"{FOCAL} is not on this machine")
 def test_focal_campaign_2():
     """The first sea's run from the record's first 1600 s: signs, clock and gauge are right."""

@@ -25,6 +25,8 @@ from calibration.uncertainty.profile import Profile, profile
 from jaxhydro.errors import InputError
 from jaxhydro.plots.style import style
 
+pytestmark = pytest.mark.slow
+
 FREE = ["added_mass.A44", "linear_damping.B44", "quadratic_damping.B44"]
 N, STEP = 400, 0.1
 
@@ -163,7 +165,6 @@ def test_the_other_unknowns_are_refitted(ship: Likelihood) -> None:
     assert alone > 5 * found.drop[0] > 0
 
 
-@pytest.mark.slow
 @measured
 def test_a_profile_finds_its_way_where_the_others_follow_on_a_curve() -> None:
     """The roll of KVLCC2: linear damping takes over where quadratic damping goes, far beyond what the covariance says."""
@@ -256,7 +257,6 @@ def test_stretched_draws_have_the_sandwichs_covariance(which: str, request) -> N
     np.testing.assert_allclose(np.sqrt(np.diag(wide)[:3]), likely.deviation(), rtol=0.02)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("least", [1, 10**6])
 def test_chains_that_are_stopped(monkeypatch: pytest.MonkeyPatch, least: int) -> None:
     """What all chains have is kept where it is enough; else the stop goes on up."""
@@ -282,7 +282,6 @@ def test_chains_that_are_stopped(monkeypatch: pytest.MonkeyPatch, least: int) ->
         assert [at[0] for at, _ in row] == [1000 * k + 6 + i for i in range(len(row))]
 
 
-@pytest.mark.slow
 def test_nuts_agrees_with_the_covariance(ship: Likelihood) -> None:
     found = sample(ship, draws=100, warmup=40, chains=2, seed=3)
     assert found.value.shape == (2, 100, 3) and found.divergences == 0

@@ -432,6 +432,7 @@ def sea() -> jh.IrregularSea:
     return jh.IrregularSea(waves, environment)
 
 
+@pytest.mark.slow
 def test_in_an_irregular_sea(sea) -> None:
     """Adams-Bashforth and Tsit5, whose loop RK4 shares, agree with both memories in the state; the laws matter."""
     model, times = small(KEULEGAN_CARPENTER, HIGH_PASS), np.arange(0.0, 60.0, 0.5)
@@ -474,6 +475,7 @@ def test_gradients_through_a_memory(method: str, monkeypatch) -> None:
         assert float(run(x + h) - run(x - h)) / float(2 * h[i]) == pytest.approx(float(reverse[i]), rel=1e-4, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_what_is_worked_out_at_rest() -> None:
     """Equilibrium and natural modes are those of plain drag, whose laws do nothing to first order; a model's damping is that
     of fast motion where slow one is high-passed, and of K = 0 where it follows K."""

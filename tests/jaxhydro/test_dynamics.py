@@ -119,6 +119,7 @@ def test_order_of_the_schemes_themselves(method: str, order: int, steps: tuple[i
     assert slope == pytest.approx(order, abs=0.3)
 
 
+@pytest.mark.slow
 def test_own_loop_against_diffrax() -> None:
     """The same scheme in this package's loop, either adjoint, and in diffrax, with drag and added mass: one motion."""
     own, checkpointed, other = (
@@ -196,6 +197,7 @@ def central_differences() -> np.ndarray:
     return np.array(found)
 
 
+@pytest.mark.slow
 def test_gradients_through_a_simulation() -> None:
     """Reverse = forward, and both = central differences of the simulation, for parameters and initial state; under vmap
     the gradients of a batch are those of its members."""

@@ -125,6 +125,7 @@ def test_a_free_decay_with_one_effect(name: str) -> None:
     assert_allclose(motion(values, surge=5.0)[:, 0], solved(rate, start), atol=2e-5)
 
 
+@pytest.mark.slow
 def test_nulls_are_silent_and_their_derivatives_are_not() -> None:
     """At neutral values the rig is its spring alone, and the motion moves with every strength; slopes are differences."""
     assert_allclose(motion({}, surge=5.0)[:, 0], 5 * np.cos(np.sqrt(C / M) * TIMES), atol=2e-6)

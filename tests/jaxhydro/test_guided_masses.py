@@ -59,6 +59,7 @@ def samples(n: int = 4) -> tuple[np.ndarray, np.ndarray]:
     return rng.uniform(-0.7, 0.7, (n, 6)), rng.uniform(-1, 1, (n, 6))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moves", [("x",), ("y",), ("z",), ("x", "z")])
 def test_lagranges_equations(moves: tuple[str, ...]) -> None:
     """Finite rotations: the kinetic energy of body and carriage differentiated by position and rate. Springs are left out."""

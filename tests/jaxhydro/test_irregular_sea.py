@@ -77,6 +77,7 @@ def test_against_direct_summation(order: int, stretching: str, heading: float) -
         assert_allclose(waves.gauge(np.array([time])), exact.elevation(now, jnp.zeros((2, 1))), atol=1e-9)
 
 
+@pytest.mark.slow
 def test_bound_waves_that_act_at_the_origin() -> None:
     """First order where the points are, and of what it binds the horizontal flow at x = y = 0, by direct summation."""
     waves = sea(2, heading=0.7, acting="at the origin", kinds=("difference",), highest_difference=0.05)
@@ -102,6 +103,7 @@ def test_bound_waves_that_act_at_the_origin() -> None:
         waves.direct()
 
 
+@pytest.mark.slow
 def test_slopes_of_the_field() -> None:
     """Derivatives by place, which have a rule of their own, against finite differences; reverse against forward."""
     fast = sea().prepared(HULL, CYLINDERS, Clock(10.0, 0.25, 100, (0.0,)))
@@ -160,6 +162,7 @@ def test_simulation_on_supports_against_direct_summation(model: jh.Model) -> Non
         assert (error < tolerance * size).all(), (method, error / size)
 
 
+@pytest.mark.slow
 def test_order_of_adams_bashforth(model: jh.Model) -> None:
     """Halving the step divides the error by 16, in a smooth problem: a decay without drag."""
     smooth = model.with_values({label: 0.0 for label in model.values if ".Cd_" in label})

@@ -344,6 +344,7 @@ def test_waves_at_the_reference_position() -> None:
     assert_allclose(*along, atol=1e-9 * np.abs(along).max())
 
 
+@pytest.mark.slow
 def test_gradients_at_rest_are_finite() -> None:
     """sqrt(u^2) has no slope at zero by itself: forward = reverse, no nan by the state or by any array of the model."""
     weights = jnp.tile(jnp.array([1.0, -2.0, 0.5, 3.0, 1.5, -1.0]), 2)

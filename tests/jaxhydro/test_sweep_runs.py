@@ -93,6 +93,7 @@ def chunks(out: Path) -> dict[Path, int]:
 # --- what a run is
 
 
+@pytest.mark.slow
 def test_a_run_is_what_simulate_does_with_the_same_options(whole, tmp_path) -> None:
     """And with the coefficients of its sea state, Cd of its height and B of its period."""
     setup = setup_in(whole / INPUTS)
@@ -259,6 +260,7 @@ def test_a_platform_that_falls_over_is_not_swept(tmp_path) -> None:
     assert not (tmp_path / "o").exists()
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_loses_nothing(file, whole, tmp_path) -> None:
     """Its run is done by the process in its place."""
     opened(tmp_path / "o", prepared(load_sweep(file), "sweep"))

@@ -95,6 +95,7 @@ def same(small: np.ndarray, large: np.ndarray, power: float | np.ndarray = 0.0) 
         assert_allclose(scaled[..., part], np.asarray(large)[..., part], atol=1e-6 * max(largest, 1e-6), rtol=0)
 
 
+@pytest.mark.slow
 def test_statics_and_modes() -> None:
     small, large = barge(SMALL), barge(1.0)
     same(equilibrium(small), equilibrium(large), SHARE)
