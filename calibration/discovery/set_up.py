@@ -1,6 +1,7 @@
 """Set-up of a study: motions, candidates, nuisance parameters, scales and priors."""
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -141,7 +142,10 @@ def set_up_study(
     for dof in ("heave", "roll", "pitch"):
         if dof in motions and (dof == "heave" or len(motions) > 1):
             nuisances[f"static_offset.{dof}.force"] = ({f"static_offset.{dof}.force": 1.0}, TRIM_PRIOR_WIDTH)
-    lines = sorted({label.rsplit(".", 1)[0] for label in declared.values if label.startswith("mooring.line")})
+    # a line's stiffness and length as springs have them; catenaries stay as declared
+    lines = sorted(
+        label.removesuffix(".stiffness") for label in declared.values if re.fullmatch(r"mooring\.line\d+\.stiffness", label)
+    )
     if lines and not any(label.startswith("mooring.") for label in labels):
         values = {label: float(value) for label, value in declared.values.items() if label.startswith("mooring.")}
         for name in values:

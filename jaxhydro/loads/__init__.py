@@ -5,6 +5,7 @@ A new effect is one file in this folder and one line in `LOADS`. Drag laws are i
 
 from jaxhydro.loads.added_mass import AddedMass
 from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
 from jaxhydro.loads.computed_excitation import ComputedExcitation
 from jaxhydro.loads.computed_radiation import ComputedRadiation
 from jaxhydro.loads.coulomb_friction import CoulombFriction
@@ -44,6 +45,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "buoyancy": Buoyancy,
     "hydrostatic_coupling": HydrostaticCoupling,
     "mooring_lines": MooringLines,
+    "catenary_lines": CatenaryLines,
     "stiffness": Stiffness,
     "linear_damping": LinearDamping,
     "quadratic_damping": QuadraticDamping,

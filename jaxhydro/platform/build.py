@@ -23,6 +23,7 @@ from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
     Buoyancy,
+    CatenaryLines,
     EndInertia,
     GuidedMasses,
     LinearDamping,
@@ -37,6 +38,8 @@ from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import with_exponents
 from jaxhydro.parameters import strongly_typed
 from jaxhydro.platform import schema as schema
+from jaxhydro.platform.catenary_build import catenary_lines, catenary_remarks
+from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.computed_hydrostatics import with_hydrostatics
 from jaxhydro.platform.computed_loads import tables_of
 from jaxhydro.platform.drag_laws import DragLaw, plain_drag, with_drag_laws
@@ -245,6 +248,8 @@ def _guided(platform: schema.Platform) -> list[AbstractLoad]:
 
 def _of_mooring(platform: schema.Platform) -> tuple[Remark, ...]:
     """Warning of mooring lines that are slack at rest, if any."""
+    if isinstance(platform.mooring, Catenary):
+        return as_warnings(catenary_remarks(platform.mooring, platform.water, platform.name))
     slack = platform.mooring.slackness() if isinstance(platform.mooring, schema.LinearSprings) else ""
     return as_warnings([slack] if slack else [])
 
@@ -253,6 +258,8 @@ def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
     mooring = platform.mooring
     if isinstance(mooring, schema.StiffnessMatrix):
         return [Stiffness(_entries("C", mooring.matrix()), jnp.asarray(mooring.preload), "mooring")]
+    if isinstance(mooring, Catenary):
+        return [catenary_lines(mooring, platform.water)]
     if not isinstance(mooring, schema.LinearSprings):
         return []
     springs = {f"line{i + 1}": line.spring() for i, line in enumerate(mooring.lines)}
@@ -294,11 +301,11 @@ def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: floa
 
 def _line_pull(load: AbstractLoad) -> float:
     """Vertical force (N) of lines at the reference position."""
-    assert isinstance(load, MooringLines)
+    assert isinstance(load, MooringLines | CatenaryLines)
     tension, towards = (np.asarray(x) for x in _pull(load))
     return float((tension * towards[2]).sum())
 
 
 @eqx.filter_jit
-def _pull(load: MooringLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
+def _pull(load: MooringLines | CatenaryLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
     return load.tension(jnp.zeros(6), jnp.eye(3))

@@ -30,6 +30,7 @@ from jaxhydro.errors import (
 )
 from jaxhydro.interop.wamit_tables import By, same_heading
 from jaxhydro.platform.body import Coefficients, Inertia, Member, Part, RigidBody
+from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.guided_mass_schema import GuidedMass, twice_named
 from jaxhydro.platform.shared_coefficients import owners, sharing_faults
 
@@ -175,8 +176,8 @@ class LinearSprings(Schema):
         return (
             f"mooring.lines: {which} slack at the reference position ({'; '.join(shown)})"
             + (", so nothing holds the platform there. " if every else ", and pulls nothing there. ")
-            + "Lines here are straight, weightless springs: for a catenary take kind: stiffness_matrix, with its stiffness and "
-            "preload (its pull) at the reference position."
+            + "Lines here are straight, weightless springs: for a catenary take kind: catenary, or kind: stiffness_matrix "
+            "with its stiffness and preload (its pull) at the reference position."
         )
 
 
@@ -361,10 +362,10 @@ class Platform(Consistent):
     quadratic_damping: QuadraticDamping = QuadraticDamping()
     added_mass: AddedMass = AddedMass()
     stiffness: Stiffness = Stiffness()
-    mooring: NoMooring | LinearSprings | StiffnessMatrix = Field(
+    mooring: NoMooring | LinearSprings | Catenary | StiffnessMatrix = Field(
         default=NoMooring(),
         discriminator="kind",
-        description="a mapping with `kind`: none, linear_springs or stiffness_matrix",
+        description="a mapping with `kind`: none, linear_springs, catenary or stiffness_matrix",
     )
     hydrostatics: Hydrostatics = Hydrostatics()
     radiation: Radiation | None = None
@@ -393,6 +394,8 @@ class Platform(Consistent):
             for end in ("rA", "rB"):
                 if (z := getattr(member, end)[2]) < bed:
                     yield Problem(f"members[{i}].{end}", f"a point above the sea bed, z = {bed:g} m", f"z = {z:g} m")
+        if isinstance(self.mooring, Catenary):
+            yield from self.mooring.water_faults(self.water.density, self.water.depth, self.water.gravity)
         yield from twice_named(self.guided_masses)
         groups = {member.group for member in self.members}
         yield from sharing_faults(self.coefficients, groups)

@@ -21,6 +21,7 @@ from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
     Buoyancy,
+    CatenaryLines,
     ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
@@ -108,6 +109,17 @@ EVERYTHING = {
 }
 
 
+CATENARIES = CatenaryLines(  # one that rests on the seabed, of two types, and one between two points above it
+    jnp.array([[-600.0, 90.0], [0.0, 40.0], [-200.0, -60.0]]),
+    jnp.array([[-58.0, 20.0], [0.0, 10.0], [-14.0, -14.0]]),
+    (("chain", "rope"), ("rope",)),
+    (True, False),
+    {"chain": 8e8, "rope": 6e7},
+    {"chain": 1500.0, "rope": 60.0},
+    {"line1.segment1": 300.0, "line1.segment2": 290.0, "line2": 94.0},
+    {"line1": 2.0, "line2": -1.0},
+    0.5,
+)
 EXCITATION = Excitation.of(np.linspace(0.2, 2.0, 5), np.random.default_rng(4).normal(0, 1e6, (6, 5)) + 4e5j)
 TRANSFER = Transfer.of(np.linspace(0.2, 2.0, 5), np.random.default_rng(3).normal(0, 2e4, (6, 5, 5)) + 3e4j * np.tri(5))
 
@@ -164,6 +176,7 @@ def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad
     """The loads that no platform file declares, at their neutral value."""
     return (
         Umbilical(),
+        CATENARIES,
         NonlinearHydrostatics.neutral(),
         MassError(model.body.mass, model.body.centre),
         ComputedRadiation(*map(jnp.asarray, RADIATION)),

@@ -1,0 +1,1 @@
+"""Catenary mooring lines: their equations, the solution of these, and the load."""

@@ -1,0 +1,105 @@
+"""Catenary mooring lines of a platform file."""
+
+from typing import Protocol
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.loads.catenary.catenary_lines import CatenaryLines, segment_names
+from jaxhydro.loads.catenary.profile import reach
+from jaxhydro.platform.catenary_schema import Catenary
+
+
+class WaterProperties(Protocol):
+    """Density (kg/m³), depth (m) and gravity (m/s²)."""
+
+    density: float
+    depth: float
+    gravity: float
+
+
+def catenary_lines(mooring: Catenary, water: WaterProperties) -> CatenaryLines:
+    """The load of catenary mooring lines.
+
+    Args:
+        mooring: Checked contents of the platform file.
+        water: Density, depth and gravity.
+
+    Returns:
+        The load; copies of a line by heading follow each other.
+    """
+    ends, types, grounded, lengths = [], [], [], {}
+    for line in mooring.lines:
+        for end in line.copies():
+            kinds = tuple(segment.type for segment in line.segments)
+            names = segment_names(len(types), len(kinds))
+            lengths |= {name: segment.length for name, segment in zip(names, line.segments)}
+            ends.append(end)
+            types.append(kinds)
+            grounded.append(mooring.on_seabed(line, water.depth))
+    used = {kind: mooring.line_types[kind] for kinds in types for kind in kinds}
+    return CatenaryLines(
+        jnp.asarray(np.array([anchor for anchor, _ in ends]).T),
+        jnp.asarray(np.array([fairlead for _, fairlead in ends]).T),
+        tuple(types),
+        tuple(grounded),
+        {kind: one.axial_stiffness for kind, one in used.items()},
+        {kind: one.weight(water.density, water.gravity) for kind, one in used.items()},
+        lengths,
+        {f"line{i + 1}": 0.0 for i in range(len(types))},
+        mooring.seabed.friction,
+    )
+
+
+@eqx.filter_jit
+def _at_rest(load: CatenaryLines) -> tuple[Float[Array, " l"], Float[Array, " l"]]:
+    """Horizontal tension (N) and lowest point under the fairlead (m), in the reference position."""
+    tension, direction = load.tension(jnp.zeros(6), jnp.eye(3))
+    horizontal, vertical = tension * jnp.hypot(direction[0], direction[1]), -tension * direction[2]
+    # what is suspended of a line that may rest on a seabed anywhere ends at its lowest point
+    segments = load.segments()._replace(grounded=jnp.ones(tension.shape, bool))
+    pull = jnp.maximum(horizontal, 1e-9 * tension)
+    return horizontal, reach(pull, jnp.maximum(vertical, 0.0), segments)[1]
+
+
+def catenary_remarks(mooring: Catenary, water: WaterProperties, source: str) -> list[str]:
+    """Warnings of lines that hang straight down in the reference position.
+
+    Args:
+        mooring: Checked contents of the platform file.
+        water: Density, depth and gravity.
+        source: Name of the platform, for the message.
+
+    Raises:
+        InputError: A line has no balance in the reference position, or one whose anchor is above the seabed sags into it.
+    """
+    load = catenary_lines(mooring, water)
+    horizontal, drop = (np.asarray(one) for one in _at_rest(load))
+    fairlead = np.asarray(load.fairlead)[2]
+    places = [(i, copy) for i, line in enumerate(mooring.lines) for copy in range(len(line.heading))]
+    problems = {}
+    for (i, _), on_bed, pull, low in zip(places, load.grounded, horizontal, fairlead - drop):
+        if not np.isfinite(pull):
+            problems[i] = Problem(
+                f"mooring.lines[{i}]", "a line that can be in balance", "no balance at the reference position"
+            )
+        elif not on_bed and low < -water.depth:
+            hint = (
+                "Let the anchor be on the sea bed, or shorten the line: a line between two points above it must not touch it."
+            )
+            problems[i] = Problem(
+                f"mooring.lines[{i}].anchor", f"an anchor at z = {-water.depth:g} m", f"a sag to {low:.4g} m", hint
+            )
+    if problems:
+        raise InputError(source, list(problems.values()))
+    slack = [i + 1 for i, (on_bed, pull) in enumerate(zip(load.grounded, horizontal)) if on_bed and pull == 0.0]
+    if not slack:
+        return []
+    which = "every line hangs" if len(slack) == len(places) else f"line {', '.join(map(str, slack))}: hangs"
+    return [
+        f"mooring.lines: {which} straight down at the reference position and has no horizontal tension. "
+        "The line is longer than the way down to the sea bed and along it to its anchor."
+    ]
