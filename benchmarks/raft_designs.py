@@ -1,0 +1,187 @@
+"""RAFT's designs, read as platform files, against RAFT itself and against the built-in platforms.
+
+    python -m benchmarks.raft_designs RAFT_FOLDER
+
+RAFT_FOLDER is a copy of WISDEM/RAFT (at e6cb69e). RAFT's own numbers are those of `benchmarks.raft_statics`, in
+benchmarks/raft/statics.json. Raw results go to benchmarks/raft/converted.json, the text to benchmarks/results-raft-designs.md.
+"""
+
+import argparse
+import json
+import math
+import tempfile
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from ruamel.yaml import YAML
+
+import jaxhydro as jh
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import linearised
+from jaxhydro.interop.conversion import Conversion
+from jaxhydro.interop.raft_design import read_raft_design
+
+FOLDER = Path(__file__).with_name("raft")
+STATICS, RAW, TEXT = FOLDER / "statics.json", FOLDER / "converted.json", Path(__file__).with_name("results-raft-designs.md")
+BUILT_IN = {  # the same hull by hand
+    "tests/test_data/OC3spar.yaml": "oc3-hywind",
+    "tests/test_data/OC4semi-WAMIT_Coefs.yaml": "oc4-deepcwind",
+    "tests/test_data/VolturnUS-S.yaml": "volturnus-s",
+}
+SHOWN = ("surge", "heave", "pitch", "yaw")
+
+
+def model_of(conversion: Conversion) -> Model:
+    """Model of a conversion, by way of its file."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "platform.yaml"
+        YAML().dump(conversion.platform, path)
+        return jh.build(jh.load_platform(path))
+
+
+def periods(mass: np.ndarray, stiffness: np.ndarray) -> dict[str, float]:
+    """Natural periods (s) of the six modes, each under the motion that is largest in it, rotations at 50 m."""
+    values, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
+    weight = np.abs(vectors) * np.array([1, 1, 1, 50, 50, 50])[:, None]
+    found: dict[str, float] = {}
+    for i in np.argsort(-weight.max(axis=0) / weight.sum(axis=0)):
+        dof = next(jh.DOFS[j] for j in np.argsort(-weight[:, i]) if jh.DOFS[j] not in found)
+        found[dof] = 2 * math.pi / math.sqrt(values[i].real) if values[i].real > 0 else math.nan
+    return found
+
+
+def worked_out(model: Model, at_rest: bool) -> dict[str, Any]:
+    """Mass, hydrostatics, added mass and periods of a model at its reference position; and `at_rest`, in equilibrium."""
+    body, weight = model.body, model.environment.density * model.environment.gravity
+    mass, stiffness = (np.asarray(x) for x in linearised(model, jnp.zeros(6)))
+    rest = jh.equilibrium(model) if at_rest else None
+    own = next(load for load in model.loads if isinstance(load, jh.loads.Buoyancy)).upright(weight)
+    found: dict[str, Any] = {
+        "M_struc": np.asarray(body.mass_matrix()).tolist(),
+        "added_mass": (mass - np.asarray(body.mass_matrix())).tolist(),
+    }
+    found |= {"volume": own["displaced_volume"], "stiffness": stiffness.tolist(), "periods": periods(mass, stiffness)}
+    found["unbalanced"] = np.asarray(model.force_at_rest(jnp.zeros(6))).tolist()
+    if rest is not None:
+        found["rest"] = np.asarray(rest).tolist()
+        found["periods_at_rest"] = periods(*(np.asarray(x) for x in linearised(model, rest)))
+    return found
+
+
+def of_raft(statics: dict[str, Any]) -> dict[str, float]:
+    """Natural periods (s) of RAFT's own matrices at the reference position (raft_fowt.py, solveEigen)."""
+    stiffness = np.array(statics["C_struc"]) + np.array(statics["C_hydro"])
+    stiffness = stiffness + np.array(statics.get("mooring_stiffness", np.zeros((6, 6))))
+    stiffness[5, 5] += statics["yaw_stiffness"]
+    return periods(np.array(statics["M_struc"]) + np.array(statics["A_hydro_morison"]), stiffness)
+
+
+def ratio(ours: float, theirs: float) -> str:
+    """A relative difference as people read it."""
+    if not (math.isfinite(ours) and math.isfinite(theirs)) or abs(theirs) < 1e-9:
+        return "-"
+    return f"{100 * (ours / theirs - 1):+.2f} %" if abs(ours / theirs - 1) >= 5e-5 else "< 0.005 %"
+
+
+def table(head: tuple[str, ...], rows: list[list[str]]) -> str:
+    """A table in Markdown."""
+    return "\n".join(f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows))
+
+
+def text(results: dict[str, Any], raft: dict[str, Any]) -> str:
+    """The page from the raw results alone."""
+    statics, modes, hands = [], [], []
+    for name, found in results.items():
+        own, theirs = found["converted"], raft.get(name)
+        m, a = np.array(own["M_struc"]), np.array(own["added_mass"])
+        title = f"{Path(name).parent.name}/{Path(name).stem}"
+        if theirs:
+            other, added = np.array(theirs["M_struc"]), np.array(theirs["A_hydro_morison"])
+            hydro = np.array(theirs["C_hydro"]) + np.array(theirs["C_struc"])
+            moor = np.array(found["mooring_stiffness"] or np.zeros((6, 6)))
+            yaw = found["yaw_stiffness"] * np.eye(6)[5][:, None] * np.eye(6)[5]
+            floating = np.array(own["stiffness"]) - moor - yaw
+            row = [title, f"{m[0, 0] / 1e3:.2f}", ratio(m[0, 0], other[0, 0])]
+            row += [ratio(m[i, i], other[i, i]) for i in (3, 5)]
+            row += [f"{own['volume']:.2f}", ratio(own["volume"], theirs["volume"])]
+            row += [ratio(floating[i, i], hydro[i, i]) for i in (2, 4)]
+            row += [ratio(a[i, i], added[i, i]) for i in (0, 2, 4)]
+            statics.append(row)
+            expected = of_raft(theirs)
+            row = [title]
+            for dof in SHOWN:
+                row += [f"{own['periods'][dof]:.2f}", ratio(own["periods"][dof], expected[dof])]
+            lines = np.array(theirs.get("mooring_stiffness", np.zeros((6, 6))))
+            row += [ratio(moor[i, i], lines[i, i]) for i in (0, 2, 4)]
+            modes.append([*row, f"{own['unbalanced'][2] / (9.81 * m[0, 0]):+.4f}"])
+        if hand := found.get("built_in"):
+            for dof in SHOWN:
+                ours, by_hand = own["periods_at_rest"][dof], hand["periods_at_rest"][dof]
+                hands.append([title, f"{dof} period (s)", f"{ours:.2f}", f"{by_hand:.2f}", ratio(ours, by_hand)])
+            for label, ours, by_hand in (
+                ("mass (t)", m[0, 0] / 1e3, np.array(hand["M_struc"])[0, 0] / 1e3),
+                ("pitch inertia about the reference point (10^9 kg m²)", m[4, 4] / 1e9, np.array(hand["M_struc"])[4, 4] / 1e9),
+                ("displaced volume of members (m³)", own["volume"], hand["volume"]),
+            ):
+                hands.append([title, label, f"{ours:.2f}", f"{by_hand:.2f}", ratio(ours, by_hand)])
+    head = ("design", "mass (t)", "mass", "M44", "M66", "volume (m³)", "volume", "C33", "C55", "A11", "A33", "A55")
+    tail = (
+        "design",
+        *(word for dof in SHOWN for word in (f"{dof} (s)", "difference")),
+        "line C11",
+        "line C33",
+        "line C55",
+        "net lift over weight",
+    )
+    treated = [
+        f"- {Path(name).parent.name}/{Path(name).stem}: "
+        + ", ".join(f"{count} {word}" for word, count in Counter(item["treatment"] for item in found["items"]).items())
+        for name, found in results.items()
+    ]
+    return (
+        "\n\n".join(
+            [
+                "# RAFT's designs as platform files",
+                "Made by `python -m benchmarks.raft_designs RAFT_FOLDER` from RAFT at e6cb69e. Differences are from RAFT's own "
+                "matrices (`benchmarks/raft/statics.json`), about the reference point, at the reference position.",
+                "## Mass, hydrostatics and added mass",
+                table(head, statics),
+                "## Natural periods and moorings",
+                "Net lift is buoyancy less weight and the lines' pull, at the reference position.",
+                table(tail, modes),
+                "## Against the built-in platforms",
+                table(("design", "quantity", "converted", "by hand", "difference"), hands),
+                "## What became of the designs' items",
+                "\n".join(treated),
+            ]
+        )
+        + "\n"
+    )
+
+
+def main() -> None:
+    """Read all designs that RAFT's results have, and write raw results and text."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, help="a copy of WISDEM/RAFT")
+    given = parser.parse_args()
+    raft, results = json.loads(STATICS.read_text("utf-8")), {}
+    for name in raft:
+        conversion = read_raft_design(given.folder / name)
+        found: dict[str, Any] = {"converted": worked_out(model_of(conversion), name in BUILT_IN)}
+        found["mooring_stiffness"] = conversion.platform.get("mooring", {}).get("stiffness")
+        found["yaw_stiffness"] = conversion.platform.get("stiffness", {}).get("C66", 0.0)
+        found["items"] = [{"source": i.source, "treatment": i.treatment.value, "meaning": i.meaning} for i in conversion.items]
+        if name in BUILT_IN:
+            found["built_in"] = worked_out(jh.build(jh.load_platform(BUILT_IN[name])), True)
+        results[name] = found
+        print(name, flush=True)
+        RAW.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    TEXT.write_text(text(results, raft), encoding="utf-8")
+    print(TEXT)
+
+
+if __name__ == "__main__":
+    main()
