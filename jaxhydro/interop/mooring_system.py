@@ -1,0 +1,160 @@
+"""A mooring system as MoorDyn and MoorPy describe it, and as the platform file has it."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+ON_SEABED = 1e-4  # of the water depth: how far from the seabed an anchor is on it
+
+
+class Attachment(StrEnum):
+    """What a point is fixed to."""
+
+    PLATFORM = "platform"
+    GROUND = "ground"
+    FREE = "free"
+    OTHER = "other"  # a rod, a body of its own, or a word that is not known
+
+
+@dataclass(frozen=True)
+class MooringPoint:
+    """End of lines.
+
+    Attributes:
+        name: Its name.
+        attachment: What it is fixed to.
+        position: From the origin at still water, the platform at its reference position, m.
+        mass: kg.
+        volume: m3.
+    """
+
+    name: str
+    attachment: Attachment
+    position: tuple[float, float, float]
+    mass: float = 0.0
+    volume: float = 0.0
+
+
+@dataclass(frozen=True)
+class LineType:
+    """Properties of lines per length.
+
+    Attributes:
+        name: Its name.
+        diameter: Of the displaced volume, m.
+        mass_per_length: In air, kg/m.
+        axial_stiffness: EA, N.
+    """
+
+    name: str
+    diameter: float
+    mass_per_length: float
+    axial_stiffness: float
+
+    def weight_in_water(self, density: float, gravity: float) -> float:
+        """Weight less buoyancy, N/m, in water of a density (kg/m³) and gravity (m/s²)."""
+        return (self.mass_per_length - density * math.pi / 4 * self.diameter**2) * gravity
+
+
+@dataclass(frozen=True)
+class MooringLine:
+    """Line between two points.
+
+    Attributes:
+        name: Its name.
+        ends: Names of its two points.
+        length: Unstretched, m.
+        line_type: Name of its type.
+    """
+
+    name: str
+    ends: tuple[str, str]
+    length: float
+    line_type: str
+
+
+@dataclass(frozen=True)
+class MooringSystem:
+    """Points, line types and lines by name.
+
+    Attributes:
+        depth: Of the sea bed under the lines, m.
+        points: Points.
+        line_types: Line types.
+        lines: Lines.
+    """
+
+    depth: float
+    points: Mapping[str, MooringPoint]
+    line_types: Mapping[str, LineType]
+    lines: Mapping[str, MooringLine]
+
+
+class NoCatenaries(Exception):
+    """A mooring that the platform file cannot have as catenaries; the text says why."""
+
+
+def catenary_section(system: MooringSystem, depth: float, density: float, gravity: float) -> dict[str, Any]:
+    """The platform file's `mooring` of kind `catenary`: every line from its anchor to the platform, through free points.
+
+    Args:
+        system: The moorings.
+        depth: Of the water that the platform file has, m.
+        density: Of the water, kg/m³.
+        gravity: m/s².
+
+    Returns:
+        The section.
+
+    Raises:
+        NoCatenaries: Lines float, branch, carry a mass, end elsewhere, or stand on another sea bed.
+    """
+    if abs(system.depth - depth) > ON_SEABED * depth:
+        raise NoCatenaries(f"its sea bed is {system.depth:g} m deep, and the water {depth:g} m")
+    left = dict(system.lines)
+    rows = []
+    for anchor in (point for point in system.points.values() if point.attachment is Attachment.GROUND):
+        while path := _path(system, left, anchor):
+            fairlead, segments = path
+            rows.append({"anchor": [*anchor.position], "fairlead": [*fairlead.position], "segments": segments})
+    if left:
+        raise NoCatenaries(f"line {next(iter(left))} does not run from the ground to the platform")
+    used = {segment["type"] for row in rows for segment in row["segments"]}
+    for name in used:
+        if (weight := system.line_types[name].weight_in_water(density, gravity)) <= 0.0:
+            raise NoCatenaries(f"lines of type {name} float: {weight:.4g} N/m in water")
+    types = {name: _line_type(kind, density, gravity) for name, kind in system.line_types.items() if name in used}
+    return {"kind": "catenary", "line_types": types, "lines": rows}
+
+
+def _path(
+    system: MooringSystem, left: dict[str, MooringLine], anchor: MooringPoint
+) -> tuple[MooringPoint, list[dict[str, Any]]] | None:
+    """Fairlead and segments of one of the lines that are left at an anchor; takes its parts away from `left`."""
+    point, segments = anchor, []
+    while line := next((line for line in left.values() if point.name in line.ends), None):
+        del left[line.name]
+        segments.append({"type": line.line_type, "length": line.length})
+        point = system.points[line.ends[1] if line.ends[0] == point.name else line.ends[0]]
+        if point.attachment is Attachment.PLATFORM:
+            return point, segments
+        meeting = sum(point.name in other.ends for other in system.lines.values())
+        if point.attachment is not Attachment.FREE or meeting != 2:
+            break
+        if point.mass or point.volume:
+            raise NoCatenaries(f"point {point.name} between two lines has a mass or a volume")
+    if not segments:
+        return None
+    raise NoCatenaries(f"the line from point {anchor.name} ends at point {point.name}, which is not on the platform")
+
+
+def _line_type(kind: LineType, density: float, gravity: float) -> dict[str, float]:
+    if kind.diameter > 0.0:
+        return {
+            "axial_stiffness": kind.axial_stiffness,
+            "mass_per_length": kind.mass_per_length,
+            "diameter": kind.diameter,
+        }
+    return {"axial_stiffness": kind.axial_stiffness, "submerged_weight": kind.weight_in_water(density, gravity)}
