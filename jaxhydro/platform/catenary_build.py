@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines, segment_names
-from jaxhydro.loads.catenary.profile import reach
+from jaxhydro.loads.catenary.catenary_profile import reach
 from jaxhydro.platform.catenary_schema import Catenary
 
 
