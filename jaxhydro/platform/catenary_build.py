@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines, segment_names
-from jaxhydro.loads.catenary.profile import reach
+from jaxhydro.loads.catenary.catenary_profile import reach
 from jaxhydro.platform.catenary_schema import Catenary
 
 
@@ -31,7 +31,9 @@ def catenary_lines(mooring: Catenary, water: WaterProperties) -> CatenaryLines:
     Returns:
         The load; copies of a line by heading follow each other.
     """
-    ends, types, grounded, lengths = [], [], [], {}
+    ends, grounded = [], []
+    types: list[tuple[str, ...]] = []
+    lengths: dict[str, float] = {}
     for line in mooring.lines:
         for end in line.copies():
             kinds = tuple(segment.type for segment in line.segments)
@@ -50,7 +52,7 @@ def catenary_lines(mooring: Catenary, water: WaterProperties) -> CatenaryLines:
         {kind: one.weight(water.density, water.gravity) for kind, one in used.items()},
         lengths,
         {f"line{i + 1}": 0.0 for i in range(len(types))},
-        mooring.seabed.friction,
+        jnp.asarray(mooring.seabed.friction),
     )
 
 

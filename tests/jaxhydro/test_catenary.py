@@ -19,8 +19,8 @@ from ruamel.yaml import YAML
 import jaxhydro as jh
 from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import CatenaryLines
-from jaxhydro.loads.catenary.profile import Segments, reach
-from jaxhydro.loads.catenary.solve import end_tension
+from jaxhydro.loads.catenary.catenary_profile import Segments, reach
+from jaxhydro.loads.catenary.catenary_tension import end_tension
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import builtin_text
 
@@ -198,6 +198,40 @@ def test_gradients_of_the_force() -> None:
         assert abs(float(difference)) > 0
         assert_allclose(forward[label], difference, rtol=1e-5)
         assert_allclose(reverse[label], forward[label], rtol=1e-9)
+
+
+@pytest.mark.slow
+def test_gradients_of_a_motion() -> None:
+    """Of a decay in surge by axial stiffness, length and anchor: forward = reverse = central differences."""
+    model, times = volturnus(), np.arange(0.0, 10.1, 0.5)
+    labels = [label for label in PARAMETERS if "friction" not in label and "weight" not in label]
+    values = {label: model.values[label] for label in labels}
+
+    def end(values, adjoint="forward"):
+        found = jh.simulate(model.at_values(values), times, position={"surge": 12.0}, step=0.5, method="rk4", adjoint=adjoint)
+        return found.position[-1, 0] + 10 * found.position[-1, 2]
+
+    forward = jax.jacfwd(end)(values)
+    reverse = jax.grad(lambda values: end(values, "reverse"))(values)
+    for label in labels:
+        h = PARAMETERS[label] * max(abs(float(values[label])), 1.0)
+        difference = (end(values | {label: values[label] + h}) - end(values | {label: values[label] - h})) / (2 * h)
+        assert_allclose(forward[label], difference, rtol=2e-4)
+        assert_allclose(reverse[label], forward[label], rtol=1e-7)
+
+
+def test_natural_periods_follow_the_lines() -> None:
+    """Their derivative by the length, through a derivative of second order, is that of central differences."""
+    model, label = moored(volturnus()), "mooring.line1.unstretched_length"
+
+    @jax.jit
+    def surge(length):
+        return -jax.jacfwd(lambda q: model.at_values({label: length}).force_at_rest(q))(jnp.zeros(6))[0, 0]
+
+    at, h = model.values[label], 1e-3
+    difference = (surge(at + h) - surge(at - h)) / (2 * h)
+    assert_allclose(jax.jit(jax.jacfwd(surge))(at), difference, rtol=1e-5)
+    assert_allclose(jax.jit(jax.grad(surge))(at), difference, rtol=1e-5)
 
 
 SCHEMA_FAULTS = [

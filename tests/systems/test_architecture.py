@@ -18,7 +18,9 @@ from jaxhydro.water import WATER_EFFECTS
 ROOT = Path(__file__).resolve().parents[2]
 FAMILIES = {"loads": LOADS, "loads.drag": DRAG_LAWS, "water": WATER_EFFECTS, "sensors": SENSOR_EFFECTS}
 
-SHARED_BY_LOADS = {  # what a load may import from another load's file, and the helpers that are no load
+SHARED_BY_LOADS = {
+    "catenary_profile": "*",
+    "catenary_tension": "*",  # what a load may import from another load's file, and the helpers that are no load
     "matrix": "*",
     "coefficients": "*",
     "abstract_law": "*",
@@ -183,5 +185,6 @@ def test_an_effect_names_its_source(family: str, name: str) -> None:
     effect = FAMILIES[family][name]
     assert effect.source.strip()
     assert effect.__doc__ and effect.source.split()[0] in effect.__doc__
-    file = {"buoyancy": "hydrostatics", "morison_drag": "drag.morison_drag"}.get(name, name)
+    moved = {"buoyancy": "hydrostatics", "morison_drag": "drag.morison_drag", "catenary_lines": "catenary.catenary_lines"}
+    file = moved.get(name, name)
     assert effect.__module__ == f"jaxhydro.{family}.{file}" or family == "loads.drag"

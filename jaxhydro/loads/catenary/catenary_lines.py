@@ -8,8 +8,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.catenary.profile import Segments
-from jaxhydro.loads.catenary.solve import end_tension
+from jaxhydro.loads.catenary.catenary_profile import Segments
+from jaxhydro.loads.catenary.catenary_tension import end_tension
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import Parameter, parameter, parameters
 from jaxhydro.rotations import cross
@@ -23,7 +23,8 @@ class CatenaryLines(AbstractLoad):
     """Elastic mooring lines with weight, from fairleads to anchors, in static balance at every instant.
 
     A line consists of segments of one or several types. Where the anchor is on the seabed, the line may rest there, with
-    friction. Line inertia, drag and bending are left out. The balance of each line is that of `end_tension`.
+    friction. Line inertia, drag and bending are left out. The balance of each line is that of
+    `end_tension` (Jonkman 2007, NREL/TP-500-41958, section 2.6; Irvine 1981, Cable Structures).
 
     Labels are `mooring.chain.axial_stiffness` (N) and `mooring.chain.submerged_weight` (N/m) of a line type named chain,
     `mooring.line1.unstretched_length` (m), or `mooring.line1.segment2.unstretched_length` where a line has several

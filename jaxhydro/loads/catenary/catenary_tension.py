@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from jaxhydro.loads.catenary.profile import Segments, flexibility, hanging_straight_down, reach
+from jaxhydro.loads.catenary.catenary_profile import Segments, flexibility, hanging_straight_down, reach
 
 MOST_STEPS = 150  # of Newton's method; 3 to 6 are usual
 TOLERANCE = 1e-8  # of the last step over the tension: squared after it, as Newton's method converges
