@@ -18,9 +18,9 @@ from jaxhydro.water import WATER_EFFECTS
 ROOT = Path(__file__).resolve().parents[2]
 FAMILIES = {"loads": LOADS, "loads.drag": DRAG_LAWS, "water": WATER_EFFECTS, "sensors": SENSOR_EFFECTS}
 
-SHARED_BY_LOADS = {
+SHARED_BY_LOADS = {  # what a load may import from another load's file, and the helpers that are no load
     "catenary_profile": "*",
-    "catenary_tension": "*",  # what a load may import from another load's file, and the helpers that are no load
+    "catenary_tension": "*",
     "matrix": "*",
     "coefficients": "*",
     "abstract_law": "*",
