@@ -1,6 +1,6 @@
 """RAFT's designs, read as platform files, against RAFT itself and against the built-in platforms.
 
-    python -m benchmarks.raft_designs RAFT_FOLDER
+    python -m benchmarks.raft_designs RAFT_FOLDER [--only DESIGN ...]
 
 RAFT_FOLDER is a copy of WISDEM/RAFT (at e6cb69e). RAFT's own numbers are those of `benchmarks.raft_statics`, in
 benchmarks/raft/statics.json. Raw results go to benchmarks/raft/converted.json, the text to benchmarks/results-raft-designs.md.
@@ -146,7 +146,8 @@ def text(results: dict[str, Any], raft: dict[str, Any]) -> str:
             [
                 "# RAFT's designs as platform files",
                 "Made by `python -m benchmarks.raft_designs RAFT_FOLDER` from RAFT at e6cb69e. Differences are from RAFT's own "
-                "matrices (`benchmarks/raft/statics.json`), about the reference point, at the reference position.",
+                "matrices (`benchmarks/raft/statics.json`), about the reference point, at the reference position, with "
+                "strips of 0.25 m. Here strips are those of the platform file's default.",
                 "## Mass, hydrostatics and added mass",
                 table(head, statics),
                 "## Natural periods and moorings",
@@ -166,9 +167,11 @@ def main() -> None:
     """Read all designs that RAFT's results have, and write raw results and text."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="a copy of WISDEM/RAFT")
+    parser.add_argument("--only", nargs="+", metavar="DESIGN", help="work out these, and keep the raw results of the others")
     given = parser.parse_args()
-    raft, results = json.loads(STATICS.read_text("utf-8")), {}
-    for name in raft:
+    raft = json.loads(STATICS.read_text("utf-8"))
+    results = json.loads(RAW.read_text("utf-8")) if given.only else {}
+    for name in given.only or raft:
         conversion = read_raft_design(given.folder / name)
         found: dict[str, Any] = {"converted": worked_out(model_of(conversion), name in BUILT_IN)}
         found["mooring_stiffness"] = conversion.platform.get("mooring", {}).get("stiffness")
