@@ -5,8 +5,8 @@
 RAFT_FOLDER is a copy of WISDEM/RAFT; designs are paths in it. RAFT and MoorPy, which are no dependencies of the project, are
 needed (RAFT_FOLDER and MoorPy on PYTHONPATH). WISDEM is not: statics need no aerodynamics, so an empty module stands in for it.
 Blades are left out, and so is a nacelle: RAFT at e6cb69e refuses RM1_Floating with one. Every member has strip coefficients
-(potModMaster 1), and types of members are written as this version has them. Strips are short (dlsMax), as RAFT loads each at its
-middle: with those of 5 m that the designs ask for, Vertical_cylinder has no added mass.
+(potModMaster 1), and types of members are written as this version has them. Strips are short (dlsMax), as RAFT loads each at
+its middle: with those of 5 m that the designs ask for, Vertical_cylinder has no added mass.
 """
 
 import argparse
