@@ -150,10 +150,16 @@ def text(results: dict[str, Any], raft: dict[str, Any]) -> str:
                 "strips of 0.25 m. Here strips are those of the platform file's default.",
                 "## Mass, hydrostatics and added mass",
                 table(head, statics),
-                "- VolturnUS-S: RAFT's inertia of a level box has its sides exchanged (`raft_masses.member_axes`). With them exchanged "
-                "here, M44, M55 and M66 agree to 1e-11.\n"
-                "- OC4: at a step RAFT counts the inertia of the section before it twice. That is 99.94 % of the difference in M44.\n"
-                "- RM1_Floating: the nacelle's 38.6 m³ are not in RAFT's run.",
+                (
+                    "- VolturnUS-S: RAFT's inertia of a level box has its sides exchanged (`raft_masses.member_axes`). "
+                    "With them exchanged here, M44, M55 and M66 agree to 1e-11.\n"
+                    "- OC4: at a step RAFT counts the inertia of the section before it twice. "
+                    "That is 99.94 % of the difference in M44.\n"
+                    "- RM1_Floating: the nacelle's 38.6 m³ are not in RAFT's run. "
+                    "The other 29.5 m³, C33 and A33 are not explained yet.\n"
+                    "- FOCTT_example: its buoyant lines come to the surface and are left out. "
+                    "The row of its lines and periods is without them."
+                ),
                 "## Natural periods and moorings",
                 "Net lift is buoyancy less weight and the lines' pull, at the reference position.",
                 table(tail, modes),
