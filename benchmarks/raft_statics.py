@@ -5,7 +5,8 @@
 RAFT_FOLDER is a copy of WISDEM/RAFT; designs are paths in it. RAFT and MoorPy, which are no dependencies of the project, are
 needed (RAFT_FOLDER and MoorPy on PYTHONPATH). WISDEM is not: statics need no aerodynamics, so an empty module stands in for it.
 Blades are left out, and so is a nacelle: RAFT at e6cb69e refuses RM1_Floating with one. Every member has strip coefficients
-(potModMaster 1), and types of members are written as this version has them.
+(potModMaster 1), and types of members are written as this version has them. Strips are short (dlsMax), as RAFT loads each at
+its middle: with those of 5 m that the designs ask for, Vertical_cylinder has no added mass.
 """
 
 import argparse
@@ -20,6 +21,7 @@ from unittest.mock import MagicMock
 import numpy as np
 
 OUT = Path(__file__).with_name("raft") / "statics.json"
+STRIP = 0.25  # m, the longest strip
 ABSENT = ("wisdem", "wisdem.ccblade", "wisdem.ccblade.ccblade", "wisdem.commonse", "wisdem.commonse.utilities")
 MATRICES = ("M_struc", "C_struc", "C_hydro", "A_hydro_morison")
 
@@ -35,6 +37,7 @@ def prepared(design: dict[str, Any]) -> dict[str, Any]:
     platform |= {"potModMaster": 1, "potFirstOrder": 0, "potSecOrder": 0}
     towers = turbine.get("tower") or []
     for member in (*platform["members"], *([towers] if isinstance(towers, dict) else towers)):
+        member["dlsMax"] = STRIP
         if member.get("type") != "beam":
             member["type"] = "rigid"
     return design

@@ -86,8 +86,10 @@ def _line_force(
         across, pull_up = end_tension(horizontal, vertical, line.length, abs(weight), kind.axial_stiffness, on_bed)
     except CatenaryError as error:
         raise CatenaryError(f"line {line.name}, {error}") from None
-    sag = 0.0 if on_bed or floats else lowest_point(across, pull_up, line.length, weight)
-    if bottom[2] - sag < -system.depth * (1 + BED):
+    sag = 0.0 if on_bed else lowest_point(across, pull_up, line.length, abs(weight))
+    if floats and bottom[2] + sag > 0.0:
+        raise CatenaryError(f"line {line.name}, a buoyant one that comes to the surface between its ends")
+    if not floats and bottom[2] - sag < -system.depth * (1 + BED):
         raise CatenaryError(f"line {line.name}, which hangs down to the sea bed between its ends")
     along = between[:2] / horizontal if horizontal > 0.0 else np.zeros(2)
     if at_top:  # the line pulls the fairlead towards the fixed point, and down

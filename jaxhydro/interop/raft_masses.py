@@ -20,7 +20,8 @@ def moments_of(member: RaftMember) -> Moments:
     """Mass of a member and its moments about rA: shell, caps and ballast.
 
     The shell reaches inwards from the outer size. Ballast fills a section from its lower station on. Caps lie within the
-    shell and have its density (RAFT at e6cb69e, raft_member.py, getInertia). As there, ballast is not displaced by caps.
+    shell and have its density (RAFT at e6cb69e, raft_member.py, getInertia). As there, ballast is not displaced by caps. At a
+    step RAFT's code counts the inertia of the section before it once more, without its mass; here it counts once.
 
     Args:
         member: The member.
@@ -53,7 +54,7 @@ def _caps(member: RaftMember, at: np.ndarray, inner: np.ndarray) -> Iterator[Mom
         place = position + side * SIDE * member.length
         return np.array([np.interp(place, at, inner[:, k]) for k in (0, 1)])
 
-    thickness = np.broadcast_to(np.array(member.cap_t, float), (len(member.cap_stations),))
+    thickness = member.cap_thicknesses()
     for i, (station, hole) in enumerate(zip(member.along(member.cap_stations), member.holes())):
         low, high = cap_extent(member, i, float(thickness[i]))
         if high <= low:

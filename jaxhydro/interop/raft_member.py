@@ -107,8 +107,14 @@ class RaftMember(Consistent):
             sizes = np.broadcast_to(sizes, (len(self.stations),))[:, None]
         return np.broadcast_to(sizes, (len(self.stations), 2))
 
+    def cap_thicknesses(self) -> Float[np.ndarray, " c"]:
+        """The thickness (m) of each cap; without `cap_stations` there is none, whatever `cap_t` says, as in RAFT."""
+        return np.broadcast_to(np.array(self.cap_t, float), (len(self.cap_stations),)) if self.cap_stations else np.zeros(0)
+
     def holes(self) -> Float[np.ndarray, "c 2"]:
         """The two sizes (m) of the hole in each cap."""
+        if not self.cap_stations:
+            return np.zeros((0, 2))
         holes = np.array(self.cap_d_in, float)
         if self.circular:
             holes = np.broadcast_to(holes, (len(self.cap_stations),))[:, None]
@@ -148,7 +154,7 @@ class RaftMember(Consistent):
             ("cap_t", caps, "cap_stations"),
         ):
             value = getattr(self, key)
-            if isinstance(value, tuple) and len(value) != count:
+            if isinstance(value, tuple) and len(value) != count and (caps or key != "cap_t"):
                 yield Problem(key, f"a number, or {count} numbers for {count} {what}", f"{len(value)} numbers")
         for key in ("Ca", "Cd"):
             value = getattr(self, key)
@@ -184,8 +190,7 @@ class RaftMember(Consistent):
         for key in ("rho_fill", "Ca", "Cd", "CaEnd", "CdEnd", "cap_t", "cap_d_in"):
             if (np.array(getattr(self, key)) < 0).any():
                 yield Problem(key, "numbers >= 0", shown(getattr(self, key)))
-        thickness = np.broadcast_to(np.array(self.cap_t, float), (len(self.cap_stations),))
-        for i, (station, cap) in enumerate(zip(self.cap_stations, thickness)):
+        for i, (station, cap) in enumerate(zip(self.cap_stations, self.cap_thicknesses())):
             low, high = cap_extent(self, i, float(cap))
             if low < -1e-9 * self.length or high > (1 + 1e-9) * self.length:
                 yield Problem(f"cap_stations[{i}]", "a cap within the member", f"{station:g}, {cap:g} m thick")

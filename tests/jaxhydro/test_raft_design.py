@@ -139,6 +139,10 @@ def test_a_cap_at_an_end_lies_within_and_one_between_about_its_station() -> None
         assert (capped.first - plain.first) / mass == pytest.approx(middle, rel=1e-9)
 
 
+def test_without_cap_stations_there_is_no_cap() -> None:
+    assert moments_of(member(cap_t=[0.5, 0.5], cap_d_in=[2.0])) == moments_of(member())
+
+
 def test_caps_at_a_step_have_the_inner_sizes_of_their_sides(tmp_path: Path) -> None:
     """By hand: base of 12 m, column of 6 m, walls of 20 mm, two plates of 20 mm at the step, one with a hole of 1 m."""
     steel, quarter = 7850.0, math.pi / 4
