@@ -68,7 +68,7 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
     for heading in sorted({case.heading for case in plan.cases}):
         if (other := declared.of_other_waves(heading)) is not None:
             expected = f"{heading:g} deg, as in the sweep's headings"
-            raise InputError(str(platform), [Problem(other[0], expected, f"{other[1]:g} deg")])
+            raise InputError(str(platform), [Problem(other.key, expected, f"{other.words} deg")])
     model = model_of(declared, plan.diffraction)
     used = None
     if calibration is not None:
