@@ -317,7 +317,7 @@ def _from_spectrum(
     if asked.measured is not None:
         about |= {"directional_spectrum": asked.measured.source, "x_bearing": asked.measured.x_bearing}
     elif len(asked.systems) > 1 or not asked.long_crested:
-        about["systems"] = [one.words for one in asked.systems]
+        about["systems"] = "; ".join(one.words for one in asked.systems)
     return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))
 
 

@@ -12,8 +12,11 @@ from numpy.testing import assert_allclose
 
 import jaxhydro as jh
 from jaxhydro.environment import Environment
-from jaxhydro.errors import InputError
+from jaxhydro.errors import InputError, validate
 from jaxhydro.interop.directional_file import read_directional_spectrum
+from jaxhydro.sweep.batch import Setup, sea_of
+from jaxhydro.sweep.cases import Plan, plan_of
+from jaxhydro.sweep.sweep_schema import Sweep
 from jaxhydro.waves import spectra
 from jaxhydro.waves.components import Components, components
 from jaxhydro.waves.directional_spectrum import SystemsSpectrum, WaveSystem, directional_components
@@ -230,6 +233,18 @@ def test_second_order_takes_each_pair_at_its_own_headings(depth: float) -> None:
     times = np.linspace(0.0, 120.0, 7)
     direct = [float(sea.direct().elevation(jnp.asarray(t), jnp.zeros((2, 1)))[0]) for t in times]
     assert_allclose(direct, sea.gauge(times), atol=1e-9)
+
+
+def test_a_sweep_has_the_sea_of_simulate() -> None:
+    """The same components; second order with spreading is refused by the schema."""
+    made = {"platform": "oc3-hywind", "scatter": [{"hs": 3.0, "tp": 9.0, "gamma": 2.0}], "spreading": 5.0, "headings": [30]}
+    with pytest.raises(InputError, match="order: expected 1 with spreading"):
+        validate(Sweep, made, "sweep")
+    plan, _ = plan_of(validate(Sweep, {**made, "order": 1, "low": 0.03, "cutoff": 0.3, "seeds": [4]}, "sweep"), "sweep")
+    assert Plan.from_json(plan.to_json()) == plan
+    setup = Setup(plan, jh.load_model("oc3-hywind"), np.arange(3.0), 0.2, None)
+    found, own = sea_of(setup, plan.run(0)), drawn(WaveSystem(3.0, 9.0, 2.0, 30.0, 5.0))
+    assert (np.asarray(found.components.heading) == np.asarray(own.heading)).all() and not found.long_crested
 
 
 def test_second_order_of_too_many_pairs_is_refused() -> None:
