@@ -7,7 +7,6 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Complex, Float, Int
-from scipy.interpolate import CubicSpline
 
 HEADING_TOLERANCE = math.radians(1e-6)  # rad, by which a heading may be outside a table or off an even step
 REFINEMENT = 8  # times as many headings, to which an even table of the whole circle is refined before it is splined
@@ -68,9 +67,7 @@ class HeadingInterpolation(eqx.Module):
         if wraps:
             knots = np.r_[knots, knots[0] + 2 * math.pi]
             values = np.concatenate([values, values[:1]])
-        spline = CubicSpline(knots, values, axis=0, bc_type="periodic" if wraps else "not-a-knot")
-        cubic = np.array(np.broadcast_to(spline.c, spline.c.shape))
-        cubic[3] = values[:-1]
+        cubic = _spline(knots, values, wraps)
         return cls(jnp.asarray(knots), jnp.asarray(cubic), wraps)
 
     def covers(self, heading: Float[np.ndarray, "..."] | float) -> Bool[np.ndarray, "..."]:
@@ -100,6 +97,39 @@ class HeadingInterpolation(eqx.Module):
         index, offset = self.place(jnp.asarray(heading, float))
         one = self.coefficient[:, index]
         return ((one[0] * offset + one[1]) * offset + one[2]) * offset + one[3]
+
+
+def _spline(
+    knots: Float[np.ndarray, " d"], values: Complex[np.ndarray, "d ..."], wraps: bool
+) -> Complex[np.ndarray, "4 c ..."]:
+    """Coefficients of a cubic spline, highest power first: periodic, or without a knot next to the ends.
+
+    Three knots have a parabola, two a line.
+
+    References:
+        de Boor (1978), A Practical Guide to Splines, chapter IV.
+    """
+    count, flat = len(knots), values.reshape(len(knots), -1)
+    h = np.diff(knots)
+    slope = np.diff(flat, axis=0) / h[:, None]
+    matrix, right = np.zeros((count, count)), np.zeros_like(flat)
+    for i in range(1, count - 1):
+        matrix[i, i - 1 : i + 2] = h[i - 1], 2 * (h[i - 1] + h[i]), h[i]
+        right[i] = 6 * (slope[i] - slope[i - 1])
+    if wraps:
+        matrix[0, [0, 1, -2]] = 2 * (h[-1] + h[0]), h[0], h[-1]
+        right[0] = 6 * (slope[0] - slope[-1])
+        matrix[-1, [0, -1]] = 1.0, -1.0
+    elif count > 3:
+        matrix[0, :3] = -h[1], h[0] + h[1], -h[0]
+        matrix[-1, -3:] = -h[-1], h[-2] + h[-1], -h[-2]
+    else:  # equal curvatures, none of a line
+        matrix[0, [0, 1]] = 1.0, -1.0 if count == 3 else 0.0
+        matrix[-1, [-1, -2]] = 1.0, -1.0 if count == 3 else 0.0
+    bend = np.linalg.solve(matrix, right)
+    step = h[:, None]
+    cubic = (np.diff(bend, axis=0) / (6 * step), 0.5 * bend[:-1], slope - step * (2 * bend[:-1] + bend[1:]) / 6, flat[:-1])
+    return np.stack(cubic).reshape(4, count - 1, *values.shape[1:])
 
 
 def _refined(values: Complex[np.ndarray, "d ..."], times: int) -> Complex[np.ndarray, "e ..."]:

@@ -28,24 +28,21 @@ SHORT = ("--duration", 60, "--dt", 0.5, "--transient", 0, "--no-figures")
     ],
 )
 def test_bad_input_has_one_clear_message(tmp_path: Path, words: tuple, expected: str) -> None:
-    result = run("simulate", "oc3-hywind", *words, "--out", tmp_path / "out")
-    said = " ".join(result.output.replace("│", " ").split())
-    assert result.exit_code == 2 and expected in said, result.output
+    said = run("simulate", "oc3-hywind", *words, "--out", tmp_path / "out", status=2)
+    assert expected in said, said
     assert not (tmp_path / "out" / "motion.csv").exists()
 
 
 def test_a_file_without_directions_is_told(tmp_path: Path) -> None:
     (tmp_path / "flat.csv").write_text("freq,efth\n0.1,1\n0.2,1\n", encoding="utf-8")
-    result = run("simulate", "oc3-hywind", "--sea-file", tmp_path / "flat.csv", "--out", tmp_path / "out")
-    said = " ".join(result.output.split())
-    assert result.exit_code == 2 and "expected a column dir, beside freq and efth, found freq, efth" in said, result.output
+    said = run("simulate", "oc3-hywind", "--sea-file", tmp_path / "flat.csv", "--out", tmp_path / "out", status=2)
+    assert "expected a column dir, beside freq and efth, found freq, efth" in said, said
 
 
 def test_two_systems_move_a_platform(tmp_path: Path) -> None:
     """Sway too; what was asked for is in the file."""
     systems = ("--sea", "hs=2 tp=14 heading=30", "--sea", "hs=1.5 tp=7 heading=-40 spreading=8")
-    result = run("simulate", "oc3-hywind", *systems, *SHORT, "--out", tmp_path)
-    assert result.exit_code == 0, result.output
+    run("simulate", "oc3-hywind", *systems, *SHORT, "--out", tmp_path)
     with xr.open_dataset(tmp_path / "simulated.nc") as data:
         assert data.attrs["significant_wave_height"] == pytest.approx(2.5) and data.attrs["order"] == 1
         assert -40 < data.attrs["mean_heading"] < 30 and data.attrs["directional_width"] > 10
