@@ -110,7 +110,7 @@ def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]
     for i, test in enumerate(manifest.tests):
         other = platform.of_other_waves(test.sea.heading) if test.kind in IN_WAVES and test.use != "ignore" else None
         if other is not None:
-            expected = f"{other[1]:g} deg, the {other[0]} of {manifest.platform}"
+            expected = f"{other.words} deg, the {other.key} of {manifest.platform}"
             yield Problem(f"tests[{i}].sea.heading", expected, f"{test.sea.heading:g} deg")
 
 

@@ -111,6 +111,10 @@ def simulate(
     spectrum: arguments.Kind = None,
     seed: arguments.Seed = None,
     amplitudes: arguments.Height = None,
+    sea: arguments.Sea = None,
+    spreading: arguments.Spreading = None,
+    sea_file: arguments.SeaFile = None,
+    x_bearing: arguments.Bearing = None,
     wave: arguments.Wave = None,
     wave_column: arguments.WaveColumn = None,
     wave_unit: arguments.WaveUnit = None,
@@ -144,27 +148,28 @@ def simulate(
         return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(given), figures)
     options.check_platform(platform)
     offset, regular = options.releases(release or []), options.regular(wave_height, wave_period)
-    sea = sea_options.asked(given, options.finite(heading, "--heading"))
-    if sea is not None and regular is not None:
+    asked = sea_options.asked(given, options.finite(heading, "--heading"))
+    if asked is not None and regular is not None:
         raise options.wrong("--wave-height", "regular waves or an irregular sea, not both")
-    if sea is None and regular is None and not offset:
-        ways = "--release, --hs and --tp, --wave, or --wave-height and --wave-period"
+    if asked is None and regular is None and not offset:
+        ways = "--release, --hs and --tp, --sea, --wave, or --wave-height and --wave-period"
         raise options.wrong("--release", f"nothing moves: give {ways}")
-    if sea is not None and wave is not None:
+    if asked is not None and wave is not None:
         from jaxhydro.interop.data_files import read_table
 
-        sea = sea_options.with_record(sea, wave, read_table(wave), given)
-    duration = sea_options.duration(duration, sea)
+        asked = sea_options.with_record(asked, wave, read_table(wave), given)
+    duration = sea_options.duration(duration, asked)
     dt = options.interval(dt, "--dt", duration)
     step = None if step is None else options.interval(step, "--step", duration)
     out = options.results_folder(out, "motion.csv", platform)
     from jaxhydro.cli import sea_command
     from jaxhydro.cli import simulate_command as command
 
-    model = _model(platform, calibration, diffraction, elements, heading if sea is not None or regular is not None else None)
+    one = None if asked is None else asked.heading if asked.long_crested else None  # several are checked with the sea
+    model = _model(platform, calibration, diffraction, elements, heading if regular is not None else one)
     job = command.Job(platform, out, duration, dt, offset, step, figures, None if calibration is None else str(calibration))
     stretch = sea_options.stretching(given)
-    if not (command.run(model, job, regular, heading, stretch) if sea is None else sea_command.run(model, job, sea)):
+    if not (command.run(model, job, regular, heading, stretch) if asked is None else sea_command.run(model, job, asked)):
         raise typer.Exit(NOT_CONVERGED)
 
 
@@ -392,6 +397,6 @@ def _model(
 
     declared = load_platform(platform)
     if heading is not None and (other := declared.of_other_waves(heading)) is not None:
-        raise options.wrong("--heading", f"{other[1]:g}, the {other[0]} of the platform file, expected; found {heading:g}")
+        raise options.wrong("--heading", f"{other.words}, the {other.key} of the platform file, expected; found {heading:g}")
     model = model_of(declared, diffraction, elements)
     return model if calibration is None else calibrated(model, platform, declared.name, calibration)

@@ -10,6 +10,7 @@ from jaxhydro.cli.sea_options import ORDER, SEED, TIME_COLUMN, WAVE_COLUMN
 from jaxhydro.dynamics.requested_sea import TRANSIENT
 from jaxhydro.waves.wave_bands import CUTOFF, LOW
 
+SEVERAL = "Irregular waves of several headings"
 SEA, RECORD, HOW = "Irregular waves from a spectrum", "Irregular waves from a record", "How waves act"
 OTHER = "Regular waves and free decays"
 HELP = (
@@ -40,6 +41,8 @@ EXAMPLES = "\n\n".join(
     (
         "[bold]Examples[/bold]",
         "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --duration 3600 --out sea",
+        "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --spreading 10 --out short-crested",
+        "jaxhydro simulate volturnus-s --sea 'hs=2 tp=14 heading=30' --sea 'hs=1.5 tp=7 heading=-40 spreading=8' --out two",
         "jaxhydro simulate volturnus-s --wave tank.csv --wave-column probe1 --wave-position -100 0 --out tank",
         "jaxhydro simulate volturnus-s --wave-height 4 --wave-period 10 --out wave",
         "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
@@ -218,6 +221,29 @@ Height = Annotated[
     Amplitudes | None,
     _option("--amplitudes", SEA, "Of components: as the spectrum says, or random about it, as in nature.", "deterministic"),
 ]
+Sea = Annotated[
+    list[str] | None,
+    _option(
+        "--sea",
+        SEVERAL,
+        "A wave system, in place of --hs, --tp and --heading; once each for wind sea and swell. Keys: hs, tp, gamma, heading, "
+        "spreading, spectrum.",
+        metavar="'hs=2 tp=14 heading=30'",
+    ),
+]
+Spreading = Annotated[
+    float | None,
+    _option("--spreading", SEVERAL, "Short-crested: exponent s of cos^2s of half the angle, with --hs.", "long-crested"),
+]
+SeaFile = Annotated[
+    Path | None,
+    _option(
+        "--sea-file", SEVERAL, "Directional spectrum: CSV or NetCDF with efth (m2/Hz/deg) over freq (Hz) and dir (deg, from)."
+    ),
+]
+Bearing = Annotated[
+    float | None, _option("--x-bearing", SEVERAL, "Compass bearing of the platform's x axis, deg, with --sea-file.", "0")
+]
 Wave = Annotated[
     Path | None, _option("--wave", RECORD, "File with a measured elevation: evenly sampled, s and m at full scale.")
 ]
@@ -237,7 +263,15 @@ Cutoff = Annotated[
     _option("--cutoff", HOW, "Highest frequency, Hz; found likewise. In high seas take less: a note says so.", f"{CUTOFF:g}"),
 ]
 Order = Annotated[
-    int | None, _option("--order", HOW, "2: with the waves that they bind (Sharma and Dean).", str(ORDER), min=1, max=2)
+    int | None,
+    _option(
+        "--order",
+        HOW,
+        "2: with the waves that they bind (Sharma and Dean).",
+        f"{ORDER}; 1 in a sea of several headings",
+        min=1,
+        max=2,
+    ),
 ]
 Stretching = Annotated[
     Stretch | None,

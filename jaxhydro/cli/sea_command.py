@@ -15,6 +15,8 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, RequestedSea, build_sea, impossible, outside
 from jaxhydro.dynamics.simulate import free_decay, largest_step
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.remarks import Remark
+from jaxhydro.waves.sea_limits import sea_limits
 
 
 def run(model: Model, job: Job, asked: RequestedSea) -> bool:
@@ -33,7 +35,7 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
         raise InputError("--duration", [Problem("", expected, f"{kept.sum()} of them {job.dt:g} s apart")])
     say("Building the sea ...", stderr=True)
     sea, about, target, notes = build_sea(model, asked, job.duration)
-    print_remarks([*model.remarks, *outside(model, sea, about)])
+    print_remarks([*model.remarks, *outside(model, sea, about), *_limits(model, about, job.duration, asked.order)])
     print_rest(model, job.platform)
     step = largest_step(model, asked.band(pace)[1]) if job.step is None else job.step
     about |= {"transient": transient, "step_at_most": step}
@@ -70,6 +72,14 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     return True
 
 
+def _limits(model: Model, about: dict[str, Any], duration: float, order: int) -> list[Remark]:
+    """Remarks on a sea that comes near the limits of wave theory."""
+    height, period = about["significant_wave_height"], about["peak_period"]
+    if period is None:
+        return []
+    return sea_limits(float(height), float(period), model.environment, order, duration / float(period))
+
+
 UNITS = {
     "significant_wave_height": "m",
     "significant_wave_height_of_components": "m",
@@ -78,6 +88,9 @@ UNITS = {
     "cutoff": "Hz",
     "repeat_period": "s",
     "heading": "deg",
+    "mean_heading": "deg",
+    "directional_width": "deg",
+    "x_bearing": "deg",
     "transient": "s",
     "step_at_most": "s",
     "wave_position": "m",
@@ -91,7 +104,7 @@ def _about(about: dict[str, Any]) -> list[tuple[str, str]]:
         if name in ("share_of_record", "mismatch") or name.startswith("share_outside"):
             shown = f"{value:.2%}"
         if isinstance(value, list):
-            shown = ", ".join(f"{x:g}" for x in value)
+            shown = ", ".join(x if isinstance(x, str) else f"{x:g}" for x in value)
         if value is not None:
             rows.append((name.replace("_", " ").capitalize(), f"{shown} {UNITS.get(name, '')}".strip()))
     return rows

@@ -17,7 +17,8 @@ from jaxhydro.waves.irregular import sampling_interval
 ORDER, SEED = 2, 0
 DEFAULTS = {"--heading": 0.0, "--dt": 0.1}
 OF_SPECTRUM = ("--hs", "--tp", "--gamma", "--spectrum", "--seed", "--amplitudes")
-OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
+OF_DIRECTIONS = ("--sea", "--sea-file", "--x-bearing", "--spreading")
+OF_SEA = (*OF_SPECTRUM, *OF_DIRECTIONS, "--low", "--cutoff", "--order", "--transient")
 OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
 UNITS = SI["length"]  # of a wave record
@@ -74,19 +75,22 @@ def stretching(given: Mapping[str, Any]) -> Any:
 def asked(given: Mapping[str, Any], heading: float) -> RequestedSea | None:
     """The irregular sea of the options given, the record yet to be read; None without one. Raises BadParameter."""
     named = {name: given[name] for name in OF_SEA if name in given}
+    own = any(name in given for name in ("--sea", "--sea-file"))
     record, of_spectrum = "--wave" in given, [name for name in named if name in OF_SPECTRUM]
-    if record and of_spectrum:
+    if record and not own and (turned := [name for name in OF_DIRECTIONS if name in given]):
+        raise wrong(turned[0], "--wave takes the sea from a record of one gauge, which does not tell directions: not both")
+    if record and of_spectrum and not own:
         raise wrong(of_spectrum[0], "--wave takes the sea from a record: not both")
     if not record and (of_gauge := [name for name in OF_RECORD if name in given]):
         raise wrong(of_gauge[0], "a record expected with it, --wave FILE")
-    if not record and "--hs" not in named:
+    if not record and not own and "--hs" not in named:
         if named:
             what = "a significant wave height expected with it" if of_spectrum else "a sea expected with it"
             raise wrong(next(iter(named)), f"{what}: --hs 3.1 --tp 8.96" + ("" if of_spectrum else ", or --wave FILE"))
         return None
     kind = str(named.get("--spectrum", "jonswap"))
     hs, tp, gamma = (named.get(name) for name in ("--hs", "--tp", "--gamma"))
-    if not record:
+    if not record and not own:
         positive(named["--hs"], "--hs")
         _spectrum(kind, tp, gamma)
     low, cutoff = (finite(named[name], name) if name in named else None for name in ("--low", "--cutoff"))
@@ -95,8 +99,13 @@ def asked(given: Mapping[str, Any], heading: float) -> RequestedSea | None:
     if low is not None and cutoff is not None and cutoff <= low:
         raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
     seed, amplitudes = named.get("--seed", SEED), str(named.get("--amplitudes", "deterministic"))
-    how = (named.get("--order", ORDER), stretching(given), heading, named.get("--transient"))
-    return RequestedSea(hs, tp, gamma, kind, seed, amplitudes, low, cutoff, *how)
+    how: dict[str, Any] = {"seed": seed, "amplitudes": amplitudes, "low": low, "cutoff": cutoff}
+    how |= {"stretching": stretching(given), "transient": named.get("--transient")}
+    if any(name in given for name in OF_DIRECTIONS):
+        from jaxhydro.cli import directional_options
+
+        return directional_options.asked(given, heading, how)
+    return RequestedSea(hs, tp, gamma, kind, order=named.get("--order", ORDER), heading=heading, **how)
 
 
 def duration(given: float | None, sea: RequestedSea | None) -> float:

@@ -24,6 +24,7 @@ from jaxhydro.remarks import Remark
 from jaxhydro.rotations import rotation
 from jaxhydro.units import for_people, unit_of
 from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
+from jaxhydro.waves.sea_limits import sea_limits
 
 RAMP_PERIODS = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
@@ -115,6 +116,7 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
     if wave is not None:
         if (fault := regular_fault(model, wave[1])) is not None:
             raise InputError("--wave-period", [Problem("", *fault)])
+        print_remarks(sea_limits(*wave, model.environment, order=1))
         ramp = min(RAMP_PERIODS * wave[1], 0.25 * job.duration)
         sea = _sea(model, wave, heading, ramp, stretching)
         step = min(default_step(model), wave[1] / STEPS_PER_WAVE) if step is None else step

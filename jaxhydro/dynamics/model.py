@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import equinox as eqx
 import jax
@@ -24,9 +24,9 @@ from jaxhydro.remarks import Remark
 from jaxhydro.scales import pace_of, size_of
 from jaxhydro.sensors.sensor_effect import AbstractSensorEffect
 from jaxhydro.water.water_effect import AbstractWaterEffect
-from jaxhydro.waves.excitation import Excitation
+from jaxhydro.waves.directional_transfer import AnyTransfer
+from jaxhydro.waves.excitation import AnyExcitation
 from jaxhydro.waves.flow import Cylinders
-from jaxhydro.waves.quadratic_transfer import Transfer
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import SeaState
 
@@ -207,14 +207,16 @@ class Model(eqx.Module):
         return self if all(a is b for a, b in zip(loads, self.loads)) else eqx.tree_at(lambda m: m.loads, self, loads)
 
     @property
-    def transfer(self) -> Transfer | None:
+    def transfer(self) -> AnyTransfer | None:
         """Difference-frequency transfer function with which irregular seas are prepared, or None; ValueError for two."""
-        return at_most_one("difference-frequency transfer function", [load.transfer_function() for load in self.loads])
+        tables = [load.transfer_function() for load in self.loads]
+        return cast(AnyTransfer | None, at_most_one("difference-frequency transfer function", tables))
 
     @property
-    def excitation(self) -> Excitation | None:
+    def excitation(self) -> AnyExcitation | None:
         """First-order excitation with which irregular seas are prepared, or None; ValueError for two."""
-        return at_most_one("computed excitation", [load.excitation_table() for load in self.loads])
+        tables = [load.excitation_table() for load in self.loads]
+        return cast(AnyExcitation | None, at_most_one("computed excitation", tables))
 
     def through(self, sea: AbstractSea) -> AbstractSea:
         """The sea that the platform meets: with the computed forces of its loads, and all water effects."""

@@ -10,14 +10,23 @@ import numpy as np
 
 from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.table_ranges import outside_tables
+from jaxhydro.dynamics.simulate import MAX_PAIRS, too_many_pairs
+from jaxhydro.dynamics.table_ranges import heading_fault, outside_tables
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark
 from jaxhydro.waves import wave_bands
 from jaxhydro.waves.components import Components
+from jaxhydro.waves.directional_spectrum import (
+    AbstractDirectionalSpectrum,
+    SystemsSpectrum,
+    TabulatedDirections,
+    WaveSystem,
+    directional_components,
+)
 from jaxhydro.waves.irregular import separated_record, spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz, white_noise
+from jaxhydro.waves.spreading import circular_moments
 
 MAX_RECORD_MISMATCH = 0.01  # of a record in the band, that first and second order may miss by root mean square
 NOTED_SHARE = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
@@ -65,6 +74,30 @@ class Record:
 
 
 @dataclass(frozen=True)
+class MeasuredDirections:
+    """Directional spectrum of a file.
+
+    Attributes:
+        source: The file.
+        spectrum: The spectrum.
+        x_bearing: Compass bearing of the platform's x axis (deg).
+    """
+
+    source: str
+    spectrum: TabulatedDirections
+    x_bearing: float
+
+    def summary(self) -> tuple[float, float, float]:
+        """Significant height (m), peak period (s) and mean heading (deg)."""
+        spectrum = self.spectrum
+        density = spectrum.values.sum(axis=1) * spectrum.bin_width
+        height = 4 * math.sqrt(float(np.trapezoid(density, spectrum.omega)))
+        energy = np.trapezoid(spectrum.values, spectrum.omega, axis=0)
+        mean = circular_moments(spectrum.heading, energy).mean
+        return height, 2 * math.pi / float(spectrum.omega[int(np.argmax(density))]), math.degrees(mean)
+
+
+@dataclass(frozen=True)
 class RequestedSea:
     """Request for an irregular sea, from a spectrum or, where `hs` is None, from `record`.
 
@@ -82,6 +115,8 @@ class RequestedSea:
         heading: Direction that the waves travel to (deg).
         transient: Time (s) that statistics leave out, or None.
         record: Measured elevation, or None.
+        systems: Wave systems, of which `hs`, `tp` and `heading` are a summary (`of_systems`); empty: one long-crested one.
+        measured: Directional spectrum of a file, or None.
     """
 
     hs: float | None
@@ -97,6 +132,29 @@ class RequestedSea:
     heading: float
     transient: float | None
     record: Record | None = None
+    systems: tuple[WaveSystem, ...] = ()
+    measured: MeasuredDirections | None = None
+
+    @classmethod
+    def of_systems(cls, systems: tuple[WaveSystem, ...], **options: Any) -> "RequestedSea":
+        """Request for a sea of wave systems. Hs is that of all; period and heading are those of the highest system."""
+        highest = max(systems, key=lambda one: one.hs)
+        hs = math.sqrt(sum(one.hs**2 for one in systems))
+        shape = "systems" if len(systems) > 1 else highest.spectrum
+        gamma = None if len(systems) > 1 else highest.gamma
+        return cls(hs=hs, tp=highest.tp, gamma=gamma, spectrum=shape, heading=highest.heading, systems=systems, **options)
+
+    @property
+    def directional(self) -> AbstractDirectionalSpectrum | None:
+        """Directional spectrum of the sea; None for a long-crested sea of one spectrum, or a record."""
+        if self.measured is not None:
+            return self.measured.spectrum
+        return SystemsSpectrum(self.systems) if self.systems else None
+
+    @property
+    def long_crested(self) -> bool:
+        """Whether all waves of the sea travel one way."""
+        return self.directional is None or self.directional.long_crested
 
     def band(self, pace: float) -> tuple[float, float]:
         """Lowest and highest frequency (Hz) for a platform of a `pace`; those not given by `wave_bands`."""
@@ -106,7 +164,9 @@ class RequestedSea:
             step = float(np.median(np.diff(self.record.times)))
             usual = wave_bands.of_records([(self.record.elevation, step)], pace)
         else:
-            usual = wave_bands.at_pace(pace) if self.tp is None else wave_bands.of_spectra([self.tp], pace)
+            peaks = [one.tp for one in self.systems] or ([] if self.tp is None else [self.tp])
+            weights = [one.hs**2 for one in self.systems] or None
+            usual = wave_bands.of_spectra(peaks, pace, weights) if peaks else wave_bands.at_pace(pace)
         low, cutoff = (found if given is None else given for given, found in zip((self.low, self.cutoff), usual))
         return low, cutoff
 
@@ -165,6 +225,8 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
         )
     if model.cylinders is None and model.conventions.diffraction != "none":
         notes.append("no member of this platform diffracts waves: 1 + Ca everywhere")
+    if not asked.long_crested:
+        _check_directional(model, asked, waves)
     sea = IrregularSea(waves, model.environment, 1 if asked.order == 1 else 2, asked.stretching)  # type: ignore[arg-type]
     if asked.record is not None:
         record = asked.record
@@ -173,6 +235,15 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
         if about["share_of_record"] < NOTED_SHARE:
             notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
     return BuiltSea(sea, about, target, notes)
+
+
+def _check_directional(model: Model, asked: RequestedSea, waves: Components) -> None:
+    """Raise InputError for a sea of several headings that cannot be simulated."""
+    if asked.order == 2 and waves.omega.size**2 > MAX_PAIRS:
+        expected = "1 in a sea of several headings"
+        raise InputError("--order", [Problem("", expected, f"2 ({too_many_pairs(waves.omega.size)})")])
+    if (fault := heading_fault(model, np.asarray(waves.heading))) is not None:
+        raise InputError("platform", [Problem("", *fault)])
 
 
 def outside(model: Model, sea: IrregularSea, about: dict[str, Any]) -> list[Remark]:
@@ -200,30 +271,31 @@ def _from_spectrum(
     model: Model, asked: RequestedSea, duration: float, notes: list[str]
 ) -> tuple[Components, dict[str, Any], Callable[[np.ndarray], np.ndarray]]:
     hs, tp, gamma = asked.hs or 0.0, asked.tp or 0.0, asked.gamma
-    if asked.spectrum == "jonswap" and gamma is None:
+    if asked.spectrum == "jonswap" and gamma is None and not asked.measured:
         gamma = float(peak_enhancement(hs, tp))
     low, cutoff = asked.band(float(model.pace))
     band = (2 * math.pi * low * (1 - 1e-9), 2 * math.pi * cutoff * (1 + 1e-9))
 
+    directional = asked.directional
+
     def spectrum(omega):
+        if directional is not None:
+            return directional.density(omega)
         if asked.spectrum == "white":
             return white_noise(omega, hs, *band)
         return jonswap(omega, hs, tp, gamma) if asked.spectrum == "jonswap" else pierson_moskowitz(omega, hs, tp)
 
     try:
-        waves = spectrum_components(
-            spectrum,
-            duration,
-            model.environment,
-            low=low,
-            cutoff=cutoff,
-            seed=asked.seed,
-            amplitudes=asked.amplitudes,
-            heading=math.radians(asked.heading),
-        )
+        drawn: Any = {"low": low, "cutoff": cutoff, "seed": asked.seed, "amplitudes": asked.amplitudes}
+        if directional is None:
+            heading = math.radians(asked.heading)
+            waves = spectrum_components(spectrum, duration, model.environment, heading=heading, **drawn)
+        else:
+            waves = directional_components(directional, duration, model.environment, **drawn)
     except ValueError as error:
         if "break" in str(error):
-            raise InputError("--hs", [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
+            option = "--hs" if directional is None else "--sea" if asked.measured is None else "--sea-file"
+            raise InputError(option, [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
         raise impossible("--cutoff", error) from None
     share = float(spectrum(waves.omega).sum() * 2 * math.pi / waves.period) / (hs**2 / 16)
     if share < MIN_SHARE:
@@ -239,6 +311,13 @@ def _from_spectrum(
         "seed": asked.seed,
         "amplitudes": asked.amplitudes,
     }
+    if not asked.long_crested:
+        moments = circular_moments(np.asarray(waves.heading), np.asarray(waves.amplitude) ** 2)
+        about |= {"mean_heading": math.degrees(moments.mean), "directional_width": math.degrees(moments.width)}
+    if asked.measured is not None:
+        about |= {"directional_spectrum": asked.measured.source, "x_bearing": asked.measured.x_bearing}
+    elif len(asked.systems) > 1 or not asked.long_crested:
+        about["systems"] = "; ".join(one.words for one in asked.systems)
     return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))
 
 

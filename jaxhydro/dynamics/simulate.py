@@ -15,16 +15,17 @@ from jaxhydro.dynamics.integrate import Adjoint, Grid, Method, clock, integrate
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.response import Response
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
-from jaxhydro.dynamics.table_ranges import check_waves
+from jaxhydro.dynamics.table_ranges import check_waves, heading_fault
 from jaxhydro.environment import DOFS
 from jaxhydro.integrators import adams_bashforth
 from jaxhydro.rotations import rotation
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
-from jaxhydro.waves.sea import AbstractSea, StillWater
+from jaxhydro.waves.sea import AbstractSea, StillWater, WaveSea
 from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.support_sea import SupportSea
 
+MAX_PAIRS = 10_000  # pairs of components of which the second order of a sea of several headings is summed directly
 SEA_STEP = 0.25  # s times the platform's pace, in irregular seas where no step is asked for
 LONGEST_STEP, STEP_AT_REST = 1.0, 0.5  # the same elsewhere: the longest, and that of a platform which nothing restores
 STEP_MARGIN = 1.001  # of a step: hulls of nearly one size take the same
@@ -110,8 +111,8 @@ def simulate(
     """Simulate the motion of a platform in a sea.
 
     The simulation starts at `times[0]` from the static equilibrium. Positions are those of the reference point, equilibrium
-    included. In an `IrregularSea` the sea is first prepared for the hull (see `supports`). Coefficients that depend on the
-    sea state are then those of that sea (`Model.in_sea`).
+    included. In an `IrregularSea` the sea is first prepared for the hull (see `supports`); one of several headings is summed
+    directly, which takes longer. Coefficients that depend on the sea state are then those of that sea (`Model.in_sea`).
 
     Methods, all at fixed steps:
 
@@ -154,6 +155,8 @@ def simulate(
     rest = equilibrium(model) if named else jnp.zeros(6)
     q, velocity = _initial_state(rest, by_name(position), by_name(rate))
     start = State(q, velocity, memory)
+    if isinstance(sea, IrregularSea) and not sea.long_crested:
+        model, sea = model.in_sea(state_of(sea.components)), summed_directly(model, sea)
     if isinstance(sea, IrregularSea):
         return simulate_irregular(model.in_sea(state_of(sea.components)), sea, start, times, step, method, adjoint).response
     duration = float(times[-1] - times[0])
@@ -165,6 +168,29 @@ def simulate(
 def _initial_state(rest: Float[Array, "6"], position: Float[Array, "6"], rate: Float[Array, "6"]) -> tuple[Array, Array]:
     """Initial position, and velocity in body axes."""
     return rest + position, Model.body_velocity(rest + position, rate)
+
+
+def summed_directly(model: Model, sea: IrregularSea) -> WaveSea:
+    """A sea of several headings by direct summation, for the tables of a model.
+
+    Raises:
+        ValueError: A table of the model has not all of its headings, or its second order has too many pairs.
+    """
+    if (fault := heading_fault(model, np.asarray(sea.components.heading))) is not None:
+        raise ValueError(f"expected {fault[0]}, found {fault[1]}")
+    count = sea.components.omega.size
+    if sea.order == 2 and count**2 > MAX_PAIRS:
+        raise ValueError(too_many_pairs(count))
+    return sea.direct()
+
+
+def too_many_pairs(count: int) -> str:
+    """Why a sea of several headings and so many components is not simulated at second order."""
+    most = math.isqrt(MAX_PAIRS)
+    return (
+        f"at second order a sea of several headings is the sum over all pairs of its components: {most} components at most, "
+        f"found {count}. Take order 1, one heading, or a shorter duration"
+    )
 
 
 class IrregularSimulation(NamedTuple):

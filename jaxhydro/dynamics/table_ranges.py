@@ -1,13 +1,15 @@
 """Waves outside the frequency range of the tables that a platform's loads come from."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import jax
 import numpy as np
 from jaxtyping import Float
 
 from jaxhydro.dynamics.model import Model
+from jaxhydro.loads.base import AbstractLoad
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.excitation import TABLE_END_TOLERANCE
@@ -88,6 +90,33 @@ def regular_fault(model: Model, period: float) -> tuple[str, str] | None:
         if one.outside(omega)[0]:
             return f"a wave within the {one.key} table, which has {one.words}", f"{period:g} s ({omega[0]:.4g} rad/s)"
     return None
+
+
+def heading_fault(model: Model, headings: Float[np.ndarray, " w"]) -> tuple[str, str] | None:
+    """Why a model's tables are not for a sea of several headings (rad): what is expected and found, or None.
+
+    A table that the platform file gives one `heading` is for waves of that heading alone. A drift table has no pairs of two
+    headings: in such a sea it is used by Newman's approximation only.
+    """
+    acting = [load for load in model.loads if any(_acts(value) for value in load.values.values())]
+    for key, table in ((k, t) for load in acting for k, t in _tables(load)):
+        by_heading = getattr(table, "by_heading", None)
+        if by_heading is None:
+            return f"an {key} table over headings, without `heading` in the platform file", "a table of one heading"
+        outside = ~by_heading.covers(headings)
+        if outside.any():
+            known = f"{math.degrees(float(by_heading.heading[0])):g} to {math.degrees(float(by_heading.heading[-1])):g} deg"
+            found = f"{outside.mean():.1%} of the waves outside them"
+            return f"waves of the headings of the {key} table, {known}", found
+        if not getattr(table, "newman", True):
+            return f"`approximation: newman` of the {key} table in a sea of several headings", "the full table"
+    return None
+
+
+def _tables(load: AbstractLoad) -> Iterator[tuple[str, Any]]:
+    for key, table in (("excitation", load.excitation_table()), ("drift", load.transfer_function())):
+        if table is not None:
+            yield key, table
 
 
 def check_waves(model: Model, sea: AbstractSea) -> None:

@@ -1,5 +1,6 @@
 """First-order wave forces and hydrostatics from Capytaine's datasets."""
 
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any
 
@@ -11,9 +12,9 @@ from jaxhydro.environment import STANDARD_GRAVITY
 from jaxhydro.errors import shown
 from jaxhydro.interop.capytaine_radiation import PAIR, Dataset, along_omega, computed, motions, open_capytaine, single
 from jaxhydro.interop.wamit_hydrostatics import FileHydrostatics
-from jaxhydro.interop.wamit_tables import same_heading
+from jaxhydro.interop.wamit_tables import distinct, same_heading
 from jaxhydro.waves.dispersion import wavenumber
-from jaxhydro.waves.excitation import Excitation
+from jaxhydro.waves.excitation import DirectionalExcitation, Excitation
 
 WHOLE = "excitation_force"
 PARTS = ("Froude_Krylov_force", "diffraction_force")
@@ -51,25 +52,79 @@ def read_capytaine_excitation(
     Raises:
         InputError: With the variable or frequencies that are wrong, or the headings that the dataset has.
     """
+    omega, (force,), one = _forces(path, body, [heading], density, gravity, depth)
+    if notes is not None:
+        notes += one.notes
+    return Excitation.of(omega, force)
+
+
+def read_capytaine_directions(
+    path: str | PathLike[str],
+    *,
+    body: str | None = None,
+    density: float | None = None,
+    gravity: float | None = None,
+    depth: float | None = None,
+    notes: list[str] | None = None,
+) -> DirectionalExcitation:
+    """Read the excitation of a dataset for waves of all its headings, as `read_capytaine_excitation` does for one.
+
+    Args:
+        path: The file.
+        body: Name of the body, where the dataset has several.
+        density: Of the platform's water, kg/m3, to which forces are scaled.
+        gravity: Of the platform, m/s2, to compare.
+        depth: Of the platform's water, m, to compare.
+        notes: What is left out, moved, scaled or different is appended here.
+
+    Raises:
+        InputError: As `read_capytaine_excitation`.
+    """
+    omega, forces, one = _forces(path, body, None, density, gravity, depth)
+    if notes is not None:
+        notes += one.notes
+    headings = capytaine_headings(one)
+    return DirectionalExcitation.of(np.radians(headings), [Excitation.of(omega, force) for force in forces])
+
+
+def capytaine_headings(one: Dataset) -> Float[np.ndarray, " d"]:
+    """Headings (deg) of a dataset's excitation, once each, ascending from -180."""
+    name = WHOLE if WHOLE in one.data else PARTS[0]
+    if name not in one.data or "wave_direction" not in one.data[name].coords:
+        raise one.wrong(f"{name}.wave_direction", "this dimension, in rad", "none")
+    return distinct(np.degrees(np.atleast_1d(one.data[name].coords["wave_direction"].values).astype(float)))
+
+
+def _forces(
+    path: str | PathLike[str],
+    body: str | None,
+    headings: Sequence[float] | None,
+    density: float | None,
+    gravity: float | None,
+    depth: float | None,
+) -> tuple[Float[np.ndarray, " w"], list[Complex[np.ndarray, "6 w"]], Dataset]:
+    """Frequencies (rad/s), forces of waves of each heading (deg), all where None is asked for, and the dataset."""
     one = open_capytaine(path, (), body)
     names = (WHOLE,) if WHOLE in one.data else PARTS
     if missing := [name for name in names if name not in one.data]:
         known = ", ".join(str(name) for name in one.data.variables) or "none"
         raise one.wrong(WHOLE, f"this variable, or {' and '.join(PARTS)}", f"no {missing[0]} among {known}")
-    tables = [_of_heading(one, name, heading) for name in names]
+    wanted = capytaine_headings(one) if headings is None else headings
+    tables = [np.sum([_of_heading(one, name, heading) for name in names], axis=0) for heading in wanted]
     omega = np.asarray(one.data[names[0]].coords["omega"].values, float)
     order = np.argsort(omega)
     inner = order[(omega[order] > 0) & np.isfinite(omega[order])]
     omega = omega[inner]
-    force = np.sum([table[inner] for table in tables], axis=0)
-    kept = np.isin(omega, computed(one, {" + ".join(names): (omega, force)}))
+    kept = np.isin(omega, computed(one, {" + ".join(names): (omega, np.hstack([table[inner] for table in tables]))}))
     if kept.sum() < 2 or (np.diff(omega[kept]) == 0).any():
         raise one.wrong("omega", "two finite frequencies above 0 or more, each once", shown(omega[kept].tolist()))
     _compare(one, omega[kept], gravity, depth)
-    about = one.scale(density) * one.shift.T @ np.conj(force[kept]).T * _phase(one, omega[kept], heading)
-    if notes is not None:
-        notes += one.notes
-    return Excitation.of(omega[kept], about)
+    scale = one.scale(density)
+    forces = [
+        scale * one.shift.T @ np.conj(table[inner][kept]).T * _phase(one, omega[kept], heading)
+        for heading, table in zip(wanted, tables)
+    ]
+    return omega[kept], forces, one
 
 
 def _phase(one: Dataset, omega: Float[np.ndarray, " w"], heading: float) -> Complex[np.ndarray, " w"]:

@@ -3,11 +3,12 @@
 from os import PathLike
 
 import numpy as np
-from jaxtyping import Complex, Int
+from jaxtyping import Complex, Float, Int
 
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.interop.wamit_tables import UNITS, contradictions, of_heading, table_of, to_omega
+from jaxhydro.interop.wamit_tables import UNITS, contradictions, headings_in, of_heading, table_of, to_omega
+from jaxhydro.waves.directional_transfer import DirectionalTransfer
 from jaxhydro.waves.quadratic_transfer import Transfer
 
 COLUMNS = "PER1 PER2 BETA1 BETA2 I MOD PHASE RE IM"
@@ -52,6 +53,66 @@ def read_transfer(
     """
     rows = table_of(path, ".12d", COLUMNS, periods=slice(0, 2), mode=4, by=by, body=body)
     mine = of_heading(path, rows, slice(2, 4), heading)
+    if warnings is not None:
+        warnings += contradictions(mine, 5, str(path))
+    omega, table = _of_rows(path, mine, newman, by)
+    return Transfer.of(omega, _unit(density * gravity, length) * table, newman)
+
+
+def read_directional_transfer(
+    path: str | PathLike[str],
+    density: float,
+    gravity: float,
+    *,
+    length: float = 1.0,
+    newman: bool = False,
+    by: str = "period",
+    body: int | None = None,
+    warnings: list[str] | None = None,
+) -> DirectionalTransfer:
+    """Read the difference-frequency transfer function in a .12d file, for waves of each of its headings.
+
+    Rows for pairs of waves of two headings are left out.
+
+    Args:
+        path: The file.
+        density: Of the water, rho, kg/m3.
+        gravity: g, m/s2.
+        length: The file's unit of length L, WAMIT's ULEN, m.
+        newman: Use the diagonal alone (`Transfer.of`).
+        by: What the first two columns are: "period" (s), "rad/s" or "Hz".
+        body: Number of the body, from 1; None: the file has one.
+        warnings: What is doubtful is appended here.
+
+    Raises:
+        InputError: As `read_transfer`, or where headings have other frequencies than the first.
+    """
+    rows = table_of(path, ".12d", COLUMNS, periods=slice(0, 2), mode=4, by=by, body=body)
+    headings = headings_in(rows, slice(2, 4))
+    if not headings.size:
+        raise InputError(str(path), [Problem("BETA1", "rows of two waves of one heading", "none")])
+    if warnings is not None:
+        warnings += contradictions(rows, 5, str(path))
+    unit, tables = _unit(density * gravity, length), []
+    for heading in headings:
+        mine = of_heading(path, rows, slice(2, 4), heading)
+        omega, table = _of_rows(path, mine[(mine[:, 2:4] == mine[0, 2:4]).all(axis=1)], newman, by)
+        tables.append((omega, unit * table))
+    omega = tables[0][0]
+    if any(one.shape != omega.shape or not np.allclose(one, omega, rtol=FREQUENCY_TOLERANCE, atol=0) for one, _ in tables):
+        raise InputError(str(path), [Problem("BETA1", "the same periods for all headings", "others at some")])
+    return DirectionalTransfer.of(omega, np.radians(headings), [table for _, table in tables], newman)
+
+
+def _unit(weight: float, length: float) -> Float[np.ndarray, "6 1 1"]:
+    """Unit of forces and moments; `weight` is rho g."""
+    return (weight * length ** np.array([1, 1, 1, 2, 2, 2]))[:, None, None]
+
+
+def _of_rows(
+    path: str | PathLike[str], mine: Float[np.ndarray, "r c"], newman: bool, by: str
+) -> tuple[Float[np.ndarray, " n"], Complex[np.ndarray, "6 n n"]]:
+    """Frequencies (rad/s), ascending, and F of the rows of one heading."""
 
     def wrong(expected: str, found: str, where: str) -> InputError:
         return InputError(str(path), [Problem(where, expected, found)])
@@ -71,8 +132,6 @@ def read_transfer(
         one, other, i, *pair = against
         expected = f"one value for {named(np.array(pair))}, given twice, the halves of the table conjugate"
         raise wrong(expected, f"{one:.5g} and {other:.5g} (as (i, j) both)", DOFS[i])
-    if warnings is not None:
-        warnings += contradictions(mine, 5, str(path))
     table = np.full((6, n, n), np.nan, complex)
     table[mode, second, first] = value.conj()
     table[mode, first, second] = value
@@ -85,10 +144,9 @@ def read_transfer(
         raise wrong(f"all pairs of {n} {many}", f"none at {named(np.array(pair))}", DOFS[i])
     if newman:
         table = np.where(np.isnan(table), 0.0, table)
-    unit = density * gravity * length ** np.array([1, 1, 1, 2, 2, 2])
     omega = to_omega(column, by)
     order = np.argsort(omega)
-    return Transfer.of(omega[order], unit[:, None, None] * table[:, order[:, None], order], newman)
+    return omega[order], table[:, order[:, None], order]
 
 
 def _contradicting(

@@ -130,6 +130,18 @@ def same_heading(one: float | Float[np.ndarray, "..."], other: float) -> Any:
     return np.abs((one - other + 180) % 360 - 180) < HEADING_TOLERANCE
 
 
+def headings_in(rows: Float[np.ndarray, "r c"], headings: slice) -> Float[np.ndarray, " d"]:
+    """Headings (deg) of rows, ascending from -180; of pairs of waves those of two waves of one heading."""
+    same = rows[np.ptp(rows[:, headings], axis=1) < HEADING_TOLERANCE, headings.start]
+    return distinct(same)
+
+
+def distinct(headings: Float[np.ndarray, " r"]) -> Float[np.ndarray, " d"]:
+    """Headings (deg) once each, ascending from -180: 360 and 0 are one."""
+    turned = np.sort(np.mod(headings + 180 + HEADING_TOLERANCE, 360) - 180 - HEADING_TOLERANCE)
+    return turned[np.r_[True, np.diff(turned) > 2 * HEADING_TOLERANCE]] if turned.size else turned
+
+
 def of_heading(
     path: str | PathLike[str], rows: Float[np.ndarray, "r c"], headings: slice, heading: float
 ) -> Float[np.ndarray, "s c"]:

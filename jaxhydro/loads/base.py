@@ -7,8 +7,8 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import AbstractEffect
-from jaxhydro.waves.excitation import Excitation
-from jaxhydro.waves.quadratic_transfer import Transfer
+from jaxhydro.waves.directional_transfer import AnyTransfer
+from jaxhydro.waves.excitation import AnyExcitation
 from jaxhydro.waves.sea_state import SeaState
 
 
@@ -60,11 +60,11 @@ class AbstractLoad(AbstractEffect):
         """The load with the coefficients of a sea state; itself where it does not depend on the sea state."""
         return self
 
-    def excitation_table(self) -> Excitation | None:
+    def excitation_table(self) -> AnyExcitation | None:
         """First-order forces that the load needs of a sea (`AbstractSea.with_tables`), or None."""
         return None
 
-    def transfer_function(self) -> Transfer | None:
+    def transfer_function(self) -> AnyTransfer | None:
         """Difference-frequency forces that the load needs of a sea (`AbstractSea.with_tables`), or None."""
         return None
 

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import parameter
-from jaxhydro.waves.excitation import Excitation
+from jaxhydro.waves.excitation import AnyExcitation
 
 
 class ComputedExcitation(AbstractLoad):
@@ -24,11 +24,11 @@ class ComputedExcitation(AbstractLoad):
     with `Model.excitation`.
     """
 
-    excitation: Excitation
+    excitation: AnyExcitation
     share: Float[Array, ""] = parameter("-", "share of the computed excitation, in place of the strips'", -0.5, 2.0)
     source: ClassVar[str] = "Newman 1977, Marine Hydrodynamics, section 6.15; OpenFAST HydroDyn, WAMIT module (ExctnMod 1)"
 
-    def excitation_table(self) -> Excitation:
+    def excitation_table(self) -> AnyExcitation:
         return self.excitation
 
     def covers(self) -> tuple[str, float, float]:

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import parameter
-from jaxhydro.waves.quadratic_transfer import Transfer
+from jaxhydro.waves.directional_transfer import AnyTransfer
 from jaxhydro.waves.sea import DRIFT_ENTRIES
 
 
@@ -24,11 +24,11 @@ class DriftTransfer(AbstractLoad):
     `Model.transfer`.
     """
 
-    transfer: Transfer
+    transfer: AnyTransfer
     share: Float[Array, ""] = parameter("-", "share of the computed difference-frequency force", 0.0, 3.0)
     source: ClassVar[str] = "Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 5; Newman 1974"
 
-    def transfer_function(self) -> Transfer:
+    def transfer_function(self) -> AnyTransfer:
         return self.transfer
 
     def covers(self) -> tuple[str, float, float]:

@@ -2,18 +2,18 @@
 
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.capytaine_radiation import read_capytaine
-from jaxhydro.interop.capytaine_waves import read_capytaine_excitation
+from jaxhydro.interop.capytaine_waves import read_capytaine_directions, read_capytaine_excitation
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 from jaxhydro.interop.retardation import Realisation, realise
-from jaxhydro.interop.wamit_drift import read_transfer
-from jaxhydro.interop.wamit_excitation import read_excitation
+from jaxhydro.interop.wamit_drift import read_directional_transfer, read_transfer
+from jaxhydro.interop.wamit_excitation import read_directional_excitation, read_excitation
 from jaxhydro.interop.wamit_radiation import read_wamit
 from jaxhydro.loads import AbstractLoad, Buoyancy, ComputedExcitation, ComputedRadiation, DriftTransfer
 from jaxhydro.platform import schema as schema
@@ -28,6 +28,8 @@ from jaxhydro.platform.table_checks import (
     same_columns,
 )
 from jaxhydro.remarks import Remark, as_warnings
+from jaxhydro.waves.directional_transfer import AnyTransfer
+from jaxhydro.waves.excitation import AnyExcitation
 
 MAX_MISFIT = 0.25  # misfit from which on a state space is none of the coefficients
 
@@ -92,29 +94,21 @@ def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[Com
     notes, doubts = list[str](), list[str]()
     if declared.kind == "wamit":
         assert not isinstance(declared.body, str)
-        table = read_excitation(
-            declared.file,
-            water.density,
-            water.gravity,
-            length=declared.length or 1.0,
-            heading=declared.heading,
-            by=declared.by,
-            body=declared.body,
-            warnings=doubts,
-        )
+        wamit: Any = {"length": declared.length or 1.0, "by": declared.by, "body": declared.body, "warnings": doubts}
+        fluid = (declared.file, water.density, water.gravity)
+        if declared.heading is None:
+            table: AnyExcitation = _simplest(read_directional_excitation(*fluid, **wamit))
+        else:
+            table = read_excitation(*fluid, heading=declared.heading, **wamit)
         if declared.body is not None:
             notes.append(f"{declared.file}: phases of body {declared.body} are those of waves at the file's own origin")
     else:
         assert not isinstance(declared.body, int)
-        table = read_capytaine_excitation(
-            declared.file,
-            heading=declared.heading,
-            body=declared.body,
-            density=water.density,
-            gravity=water.gravity,
-            depth=water.depth,
-            notes=notes,
-        )
+        own: Any = {"body": declared.body, "density": water.density, "gravity": water.gravity, "depth": water.depth}
+        if declared.heading is None:
+            table = _simplest(read_capytaine_directions(declared.file, notes=notes, **own))
+        else:
+            table = read_capytaine_excitation(declared.file, heading=declared.heading, notes=notes, **own)
     load = ComputedExcitation(table, share=jnp.asarray(float(declared.use == "load")))
     return load, (*as_warnings(doubts), *map(Remark, notes))
 
@@ -126,18 +120,26 @@ def drift_of(declared: schema.Drift, water: schema.Water) -> tuple[DriftTransfer
         InputError: The file is wrong.
     """
     doubts: list[str] = []
-    transfer = read_transfer(
-        declared.file,
-        water.density,
-        water.gravity,
-        length=declared.length,
-        heading=declared.heading,
-        newman=declared.approximation == "newman",
-        by=declared.by,
-        body=declared.body,
-        warnings=doubts,
-    )
+    how: Any = {"length": declared.length, "newman": declared.approximation == "newman", "by": declared.by}
+    how |= {"body": declared.body, "warnings": doubts}
+    fluid = (declared.file, water.density, water.gravity)
+    if declared.heading is None:
+        transfer: AnyTransfer = _simplest(read_directional_transfer(*fluid, **how))
+    else:
+        transfer = read_transfer(*fluid, heading=declared.heading, **how)
     return DriftTransfer(transfer, share=jnp.asarray(float(declared.use == "load"))), as_warnings(doubts)
+
+
+def _simplest(table: Any) -> Any:
+    """A table over headings; that of its one heading where it has no other."""
+    knots = table.by_heading.heading
+    return table.towards(float(knots[0])) if knots.size == 1 else table
+
+
+def _one_heading(table: Any) -> Any:
+    """A table at one of its headings: 0 where it has that, else its first."""
+    by_heading = getattr(table, "by_heading", None)
+    return table.towards(0.0 if by_heading is None or by_heading.covers(0.0) else float(by_heading.heading[0]))
 
 
 def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[AbstractLoad], list[Remark]]:
@@ -163,7 +165,8 @@ def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[Abstr
         loads.append(excitation)
         remarks += said
         if excites.kind == "wamit":
-            omega, force = (np.asarray(values) for values in (excitation.excitation.omega, excitation.excitation.force))
+            of_one = _one_heading(excitation.excitation)
+            omega, force = np.asarray(of_one.omega), np.asarray(of_one.force)
             heave = hydrostatic_stiffness(buoyancy, water.density * water.gravity)[2, 2]
             hull = LongWaves(float(heave), platform.rigid_body.combined()[0], water.depth, water.gravity)
             remarks += as_warnings(excitation_column(omega, force, excites.by, excites.file, hull))
@@ -171,7 +174,7 @@ def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[Abstr
     if (drifts := platform.drift) is not None:
         drift, said = drift_of(drifts, water)
         loads.append(drift)
-        table = drift.transfer
+        table = _one_heading(drift.transfer)
         of_regular_waves = np.einsum("im,imk->ik", np.asarray(table.eigenvalue), np.abs(np.asarray(table.filters)) ** 2)
         remarks += [*said, *as_warnings(drift_column(np.hypot(*of_regular_waves[:2]), drifts.by, drifts.file))]
         columns.append(Column(drifts.file, np.asarray(table.omega), drifts.by))

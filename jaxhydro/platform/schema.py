@@ -28,10 +28,11 @@ from jaxhydro.errors import (
     suggest,
     validate,
 )
-from jaxhydro.interop.wamit_tables import By, same_heading
+from jaxhydro.interop.wamit_tables import By
 from jaxhydro.platform.body import Coefficients, Inertia, Member, Part, RigidBody
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.guided_mass_schema import GuidedMass, twice_named
+from jaxhydro.platform.other_waves import OtherWaves, other_waves
 from jaxhydro.platform.shared_coefficients import owners, sharing_faults
 
 __all__ = ["Coefficients", "Inertia", "Member", "Part", "Platform", "RigidBody", "builtin_platforms", "load_platform"]
@@ -292,7 +293,8 @@ class Radiation(FromFile):
 class Drift(Schema):
     """Difference-frequency second-order forces from another program: WAMIT's `.12d`.
 
-    They are for waves of a `heading` (deg), of all pairs of frequencies or by Newman's approximation. The file has the unit
+    They are for waves of a `heading` (deg), or of all headings of the file where none is given; of all pairs of frequencies
+    or by Newman's approximation. The file has the unit
     of length `length` (ULEN, m); `by` says what its first two columns are. `use`: part of the model, or a candidate of
     `diagnose`.
     """
@@ -301,7 +303,7 @@ class Drift(Schema):
     length: Positive = 1.0
     by: By = "period"
     body: Count | None = None
-    heading: Number = 0.0
+    heading: Number | None = None
     approximation: Literal["full", "newman"] = "full"
     use: Literal["load", "candidate"] = "load"
 
@@ -309,19 +311,18 @@ class Drift(Schema):
 class Excitation(FromFile):
     """First-order wave forces from another program, in place of the strips'.
 
-    The file is WAMIT's `.3` or Capytaine's `.nc`, for waves of a `heading` (deg). `use`: part of the model, or a candidate
-    of `diagnose`.
+    The file is WAMIT's `.3` or Capytaine's `.nc`, for waves of a `heading` (deg), or of all headings of the file where none
+    is given. `use`: part of the model, or a candidate of `diagnose`.
     """
 
     endings = {".3": "wamit", ".nc": "capytaine"}
 
     by: By = "period"
-    heading: Number = 0.0
+    heading: Number | None = None
     use: Literal["load", "candidate"] = "load"
 
 
 FILE_KEYS = ("hydrostatics", "radiation", "excitation", "drift")  # keys that may name a file
-WAVE_FILE_KEYS = ("excitation", "drift")  # ... that is of waves of one heading
 
 
 class ReferenceSea(Schema):
@@ -383,10 +384,14 @@ class Platform(Consistent):
         """Paths of the files that the platform file names, by key."""
         return {key: one.file for key in FILE_KEYS if (one := getattr(self, key)) is not None and one.file}
 
-    def of_other_waves(self, heading: float) -> tuple[str, float] | None:
-        """Key and heading (deg) of a table that was computed for another wave heading than this, or None."""
-        tables = {f"{key}.heading": one.heading for key in WAVE_FILE_KEYS if (one := getattr(self, key)) is not None}
-        return next(((key, own) for key, own in tables.items() if not same_heading(own, heading)), None)
+    def of_other_waves(self, heading: float) -> OtherWaves | None:
+        """A table that was computed for other wave headings than this one (deg), or None.
+
+        Headings between those of a file are interpolated. A file that cannot be read is left for where it is loaded.
+        """
+        kinds = {"excitation": (self.excitation and self.excitation.kind) or "", "drift": "wamit drift"}
+        tables = ((key, one, kind) for key, kind in kinds.items() if (one := getattr(self, key)) is not None)
+        return next((other for table in tables if (other := other_waves(*table, heading)) is not None), None)
 
     def _faults(self) -> Iterator[Problem]:
         bed = -self.water.depth

@@ -27,6 +27,7 @@ from jaxhydro.sweep.at_once import shared_preparation, simulate_in_halves
 from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.run_statistics import RunResults, run_results
 from jaxhydro.units import for_people
+from jaxhydro.waves.directional_spectrum import WaveSystem
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.support_sea import SupportSea
@@ -68,7 +69,7 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
     for heading in sorted({case.heading for case in plan.cases}):
         if (other := declared.of_other_waves(heading)) is not None:
             expected = f"{heading:g} deg, as in the sweep's headings"
-            raise InputError(str(platform), [Problem(other[0], expected, f"{other[1]:g} deg")])
+            raise InputError(str(platform), [Problem(other.key, expected, f"{other.words} deg")])
     model = model_of(declared, plan.diffraction)
     used = None
     if calibration is not None:
@@ -114,6 +115,11 @@ def sea_of(setup: Setup, run: Run) -> IrregularSea:
     """
     plan, case = setup.plan, run.case
     kind = plan.spectrum.replace("_", "-")
+    if plan.spreading is not None:
+        system = WaveSystem(case.hs, case.tp, case.gamma, case.heading, plan.spreading, kind)
+        options = {"seed": run.seed, "amplitudes": plan.amplitudes, "low": plan.low, "cutoff": plan.cutoff}
+        options |= {"order": plan.order, "stretching": plan.stretching, "transient": plan.start}
+        return build_sea(setup.model, RequestedSea.of_systems((system,), **options), plan.duration).sea
     how = (plan.low, plan.cutoff, plan.order, plan.stretching, case.heading, plan.start)
     asked = RequestedSea(case.hs, case.tp, case.gamma, kind, run.seed, plan.amplitudes, *how)
     return build_sea(setup.model, asked, plan.duration).sea
@@ -134,6 +140,8 @@ def run_outcomes(setup: Setup, runs: Sequence[Run]) -> list[RunResults | str]:
 
     They differ from those of `run_outcome` by rounding.
     """
+    if setup.plan.spreading is not None:  # seas of several headings share no preparation
+        return [run_outcome(setup, run) for run in runs]
     found: dict[int, RunResults | str] = {}
     seas = {}
     for run in runs:

@@ -94,6 +94,7 @@ class Plan:
     time_series: bool
     exponents: tuple[float, ...]
     equivalent_frequency: float
+    spreading: float | None = None
 
     def __len__(self) -> int:
         return len(self.cases) * len(self.seeds)
@@ -208,6 +209,7 @@ def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[st
         "diffraction",
         "motions",
         "time_series",
+        "spreading",
     )
     usual = of_spectra([case.tp for case in cases], pace, [case.probability * case.hs**2 for case in cases])
     low, cutoff = (found if given is None else given for given, found in zip((sweep.low, sweep.cutoff), usual))

@@ -112,6 +112,9 @@ class Sweep(Consistent):
     scatter: Scatter = Field(description="a CSV file, a list of sea states (hs, tp, probability), or a grid (hs, tp)")
     spectrum: Literal["jonswap", "pierson_moskowitz"] = "jonswap"
     amplitudes: Literal["deterministic", "rayleigh"] = "deterministic"
+    spreading: NonNegative | None = Field(
+        default=None, description="short-crested: exponent s of cos^2s of half the angle; with order 1"
+    )
     headings: Annotated[tuple[OneHeading, ...], Field(min_length=1)] = (0.0,)
     seeds: Seeds = Field(default=1, description=f"a number of seeds, 1 to {MAX_SEEDS}, or a list of whole numbers >= 0")
     duration: Positive = 3600.0
@@ -128,6 +131,8 @@ class Sweep(Consistent):
     fatigue: Fatigue = Fatigue()
 
     def _faults(self) -> Iterator[Problem]:
+        if self.spreading is not None and self.order != 1:
+            yield Problem("order", "1 with spreading: second order is of long-crested seas", f"{self.order}")
         if self.low is not None and self.cutoff is not None and self.cutoff <= self.low:
             yield Problem("cutoff", f"a number above low, {self.low:g} Hz", f"{self.cutoff:g}")
         if self.transient is not None and self.transient >= self.duration:

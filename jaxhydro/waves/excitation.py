@@ -1,11 +1,14 @@
 """First-order wave forces from tables of a radiation-diffraction program."""
 
-from typing import Self
+from collections.abc import Sequence
+from typing import Self, TypeAlias
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Complex, Float, Int
+
+from jaxhydro.waves.heading_interpolation import HeadingInterpolation
 
 TABLE_END_TOLERANCE = 1e-4  # of a table's first and last frequency, by which waves may be outside it
 
@@ -44,10 +47,61 @@ class Excitation(eqx.Module):
             raise ValueError(f"two ascending frequencies or more and six forces of each, found {omega.shape}, {force.shape}")
         return cls(jnp.asarray(omega), jnp.asarray(force))
 
-    def at(self, omega: Float[Array, " w"]) -> Complex[Array, "6 w"]:
-        """X at other frequencies (rad/s), (6, w)."""
+    def towards(self, heading: float) -> "Excitation":
+        """The same: a table of one heading."""
+        return self
+
+    def at(self, omega: Float[Array, " w"], heading: Float[Array, " w"] | None = None) -> Complex[Array, "6 w"]:
+        """X at other frequencies (rad/s), (6, w). It is of one heading, whatever `heading` (rad) is."""
         place, share, inside = within(self.omega, omega)
         return jnp.where(inside, (1 - share) * self.force[:, place] + share * self.force[:, place + 1], 0.0)
+
+
+class DirectionalExcitation(eqx.Module):
+    """First-order wave force on a platform by frequency and heading, as `Excitation` between its frequencies.
+
+    Attributes:
+        omega: Angular frequencies (rad/s), ascending, (n,).
+        by_heading: X (N/m, N m/m) over headings, (6, n) at each (`HeadingInterpolation`).
+    """
+
+    omega: Float[Array, " n"]
+    by_heading: HeadingInterpolation
+
+    @classmethod
+    def of(cls, heading: Float[np.ndarray, " d"], tables: Sequence[Excitation]) -> Self:
+        """Excitation from tables of one heading each.
+
+        Args:
+            heading: Directions that the waves travel to (rad), (d,).
+            tables: A table of each heading, all of the same frequencies.
+
+        Raises:
+            ValueError: Frequencies differ.
+        """
+        omega = np.asarray(tables[0].omega)
+        if any(one.omega.shape != omega.shape or not np.allclose(one.omega, omega, rtol=1e-6, atol=0) for one in tables):
+            raise ValueError("the same frequencies for all headings expected, found others")
+        return cls(tables[0].omega, HeadingInterpolation.of(heading, np.stack([np.asarray(one.force) for one in tables])))
+
+    def towards(self, heading: float) -> Excitation:
+        """The table of waves of one heading (rad)."""
+        return Excitation(self.omega, self.by_heading.at(heading))
+
+    def at(self, omega: Float[Array, " w"], heading: Float[Array, " w"]) -> Complex[Array, "6 w"]:
+        """X of waves of some frequencies (rad/s) and headings (rad), one heading each, (6, w)."""
+        place, share, inside = within(self.omega, omega)
+        index, offset = self.by_heading.place(heading)
+
+        def column(at: Int[Array, " w"]) -> Complex[Array, "6 w"]:
+            cubic = self.by_heading.coefficient[:, index, :, at]  # (w, 4, 6)
+            powers = jnp.stack([offset**3, offset**2, offset, jnp.ones_like(offset)], axis=1)
+            return jnp.einsum("wpi,wp->iw", cubic, powers)
+
+        return jnp.where(inside, (1 - share) * column(place) + share * column(place + 1), 0.0)
+
+
+AnyExcitation: TypeAlias = Excitation | DirectionalExcitation
 
 
 def within(

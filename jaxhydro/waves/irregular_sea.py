@@ -11,17 +11,25 @@ from jaxtyping import Array, Complex, Float
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, PlaneWaves
-from jaxhydro.waves.excitation import Excitation
+from jaxhydro.waves.directional_transfer import AnyTransfer
+from jaxhydro.waves.excitation import AnyExcitation
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.preparation import Preparation
-from jaxhydro.waves.quadratic_transfer import Transfer
-from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY, AbstractSea, Stretching, WaveSea, direction, growth
+from jaxhydro.waves.sea import (
+    DRIFT_REFERENCE_FREQUENCY,
+    AbstractSea,
+    Stretching,
+    WaveSea,
+    direction,
+    growth,
+)
 from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum
 from jaxhydro.waves.support_sea import Clock, SupportSea
 from jaxhydro.waves.supports import Box, supports
 
 Acting = Literal["everywhere", "at the origin", "nowhere"]
 _elevation = eqx.filter_jit(elevation_spectrum)
+ONE_HEADING = 1e-12  # rad, by which headings of a long-crested sea may differ
 EXCURSION = 20.0  # m times the platform's size, that it may drift along the waves before its sea is prepared anew
 
 
@@ -74,6 +82,11 @@ class IrregularSea(AbstractSea):
             bound = bound_waves(self.components, self.environment, self.kinds, highest_difference=self.highest_difference)
         return WaveSea(waves, self.environment, self.ramp, self.stretching, bound)
 
+    @property
+    def long_crested(self) -> bool:
+        """Whether all components travel one way; not of a traced sea."""
+        return float(np.ptp(np.asarray(self.components.heading))) <= ONE_HEADING
+
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
         return self.direct().flow(time, points, cylinders)
 
@@ -86,7 +99,7 @@ class IrregularSea(AbstractSea):
     def drift(self, time: Float[Array, ""]) -> Float[Array, " d"]:
         return self.direct().drift(time)
 
-    def with_tables(self, exciting: Excitation | None, transfer: Transfer | None) -> WaveSea:
+    def with_tables(self, exciting: AnyExcitation | None, transfer: AnyTransfer | None) -> WaveSea:
         return self.direct().with_tables(exciting, transfer)
 
     def direction(self) -> Float[Array, "2"]:
@@ -134,8 +147,8 @@ class IrregularSea(AbstractSea):
         cylinders: Cylinders | None,
         clock: Clock,
         excursion: float = EXCURSION,
-        transfer: Transfer | None = None,
-        exciting: Excitation | None = None,
+        transfer: AnyTransfer | None = None,
+        exciting: AnyExcitation | None = None,
     ) -> "SupportSea":
         """The sea prepared for one hull and one clock, for fast evaluation in a simulation.
 
@@ -163,8 +176,8 @@ class IrregularSea(AbstractSea):
         cylinders: Cylinders | None,
         clock: Clock,
         excursion: float = EXCURSION,
-        transfer: Transfer | None = None,
-        exciting: Excitation | None = None,
+        transfer: AnyTransfer | None = None,
+        exciting: AnyExcitation | None = None,
     ) -> Preparation:
         """The part of `prepared` that all seas of these frequencies and this heading share.
 
@@ -172,7 +185,7 @@ class IrregularSea(AbstractSea):
         """
         waves, depth = self.components, float(self.environment.depth)
         heading, period = float(waves.heading[0]), float(waves.period)
-        if np.ptp(np.asarray(waves.heading)) > 1e-12:
+        if not self.long_crested:
             raise ValueError("a short-crested sea is evaluated directly: it has no support wavenumbers of one heading")
         if self.acting == "at the origin":  # that flow is looked up there
             points = np.concatenate([points, np.zeros((3, 1))], axis=1)
@@ -199,8 +212,8 @@ class IrregularSea(AbstractSea):
             jnp.asarray(np.array([math.cos(heading), math.sin(heading)])),
             jnp.zeros(0) if cylinders is None else cylinders.radius,
             (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp),
-            exciting,
-            transfer,
+            None if exciting is None else exciting.towards(heading),
+            None if transfer is None else transfer.towards(heading),
             jnp.asarray((np.asarray(waves.omega) / DRIFT_REFERENCE_FREQUENCY) ** 2),
             jnp.asarray(share),
             2 * math.pi / period,

@@ -68,6 +68,16 @@ class Transfer(eqx.Module):
         found = (1 - share) * self.filters[..., place] + share * self.filters[..., place + 1]
         return jnp.where(inside, found, 0.0)
 
+    def towards(self, heading: float) -> "Transfer":
+        """The same: a table of one heading."""
+        return self
+
+    def of_waves(
+        self, omega: Float[Array, " w"], heading: Float[Array, " w"], amplitude: Complex[Array, " w"]
+    ) -> Float[Array, "6"]:
+        """Force (N, N m) of waves of frequencies (rad/s) and complex amplitudes (m). It is of one heading, whatever theirs."""
+        return self.force(self.at(omega) @ amplitude)
+
     def force(self, filtered: Complex[Array, "6 m ..."]) -> Float[Array, "6 ..."]:
         """Force (N, N m), (6, ...), of filtered waves, (6, m, ...)."""
         square = (filtered * filtered.conj()).real

@@ -17,9 +17,9 @@ from jaxhydro.choices import check
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
-from jaxhydro.waves.excitation import Excitation
+from jaxhydro.waves.directional_transfer import AnyTransfer
+from jaxhydro.waves.excitation import AnyExcitation
 from jaxhydro.waves.flow import Cylinders, Flow
-from jaxhydro.waves.quadratic_transfer import Transfer
 
 Stretching = Literal["none", "vertical", "wheeler", "extrapolation"]
 DRIFT_REFERENCE_FREQUENCY = 0.6  # rad/s at which `AbstractSea.drift` weighs a wave by one
@@ -77,7 +77,7 @@ class AbstractSea(eqx.Module):
         """
         return None
 
-    def with_tables(self, exciting: Excitation | None, transfer: Transfer | None) -> "AbstractSea":
+    def with_tables(self, exciting: AnyExcitation | None, transfer: AnyTransfer | None) -> "AbstractSea":
         """The sea with a platform's computed first-order and difference-frequency forces, by direct summation.
 
         A prepared sea was made with them, and is returned as it is; so is still water.
@@ -134,8 +134,8 @@ class WaveSea(AbstractSea):
     ramp: Float[Array, ""] | float = 0.0
     stretching: Stretching = eqx.field(static=True, default="vertical")
     bound: PlaneWaves | None = None
-    transfer: Transfer | None = None
-    exciting: Excitation | None = None
+    transfer: AnyTransfer | None = None
+    exciting: AnyExcitation | None = None
 
     def __check_init__(self) -> None:
         """Raise UnknownName for another stretching."""
@@ -202,15 +202,16 @@ class WaveSea(AbstractSea):
         )
         if self.transfer is None:
             return plain
-        return jnp.concatenate([plain, self.transfer.force(self.transfer.at(omega) @ one)])
+        return jnp.concatenate([plain, self.transfer.of_waves(omega, self.headings(), one)])
 
     def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
         if self.exciting is None:
             return None
+        exciting = self.exciting.at(self.waves.omega, self.headings())
         angle = self.waves.omega * time - place @ self.waves.vector
-        return self.growth(time) * (self.exciting.at(self.waves.omega) @ (self.waves.elevation * jnp.exp(1j * angle))).real
+        return self.growth(time) * (exciting @ (self.waves.elevation * jnp.exp(1j * angle))).real
 
-    def with_tables(self, exciting: Excitation | None, transfer: Transfer | None) -> "WaveSea":
+    def with_tables(self, exciting: AnyExcitation | None, transfer: AnyTransfer | None) -> "WaveSea":
         exciting, transfer = exciting or self.exciting, transfer or self.transfer
         return dataclasses.replace(self, exciting=exciting, transfer=transfer)
 
@@ -226,6 +227,10 @@ class WaveSea(AbstractSea):
 
         bound = None if self.bound is None else on(self.bound)
         return dataclasses.replace(self, waves=on(self.waves), bound=bound)
+
+    def headings(self) -> Float[Array, " w"]:
+        """Directions that the first-order waves travel to (rad), (w,)."""
+        return jnp.arctan2(self.waves.vector[1], self.waves.vector[0])
 
     def growth(self, time: Float[Array, "..."]) -> Float[Array, "..."]:
         """Fraction (0 to 1) of their full height that the waves have at a time (s)."""

@@ -1,0 +1,100 @@
+"""Seas of several headings from the command-line options."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from jaxhydro.cli.options import finite, positive, wrong
+from jaxhydro.dynamics.requested_sea import MeasuredDirections, RequestedSea
+from jaxhydro.errors import suggest
+from jaxhydro.interop.directional_file import read_directional_spectrum
+from jaxhydro.waves.directional_spectrum import SHAPES, WaveSystem
+from jaxhydro.waves.spectra import MAX_ENHANCEMENT
+
+EXAMPLE = '--sea "hs=2 tp=14 heading=30"'
+KEYS = ("hs", "tp", "gamma", "heading", "spreading", "spectrum")
+OTHERS = ("--hs", "--tp", "--gamma", "--spectrum", "--spreading", "--wave")  # options that `--sea` and `--sea-file` replace
+
+
+def check_exponent(value: float, option: str, key: str = "") -> float:
+    """An exponent s of a spreading. Raises BadParameter."""
+    if not 0 <= finite(value, option) <= 1e4:
+        raise wrong(option, f"{key}a number from 0 to 10000 expected, found {value:g}")
+    return value
+
+
+def system(text: str) -> WaveSystem:
+    """Wave system of a text such as `hs=2 tp=14 heading=30`. Raises BadParameter."""
+    found: dict[str, Any] = {}
+    for word in text.replace(",", " ").split():
+        key, equals, value = word.partition("=")
+        if key not in KEYS or not equals:
+            raise wrong("--sea", f"{', '.join(KEYS)} expected, as {EXAMPLE}; found {word!r}. {suggest(key, KEYS)}".strip())
+        if key in found:
+            raise wrong("--sea", f"{key} is given twice in {text!r}")
+        if key == "spectrum":
+            if value not in SHAPES:
+                raise wrong("--sea", f"spectrum={' or '.join(SHAPES)} expected, found {value!r}")
+            found[key] = value
+            continue
+        try:
+            found[key] = finite(float(value), "--sea")
+        except ValueError:
+            raise wrong("--sea", f"a number after {key}= expected, found {value!r}") from None
+    for key in ("hs", "tp"):
+        if key not in found:
+            raise wrong("--sea", f"{key} expected, as {EXAMPLE}; found {text!r}")
+        if not found[key] > 0:
+            raise wrong("--sea", f"{key}: a number > 0 expected, found {found[key]:g}")
+    if "gamma" in found and found.get("spectrum", SHAPES[0]) != SHAPES[0]:
+        raise wrong("--sea", f"gamma: a JONSWAP spectrum expected with it, found {found['spectrum']}")
+    if "gamma" in found and not 1 <= found["gamma"] <= MAX_ENHANCEMENT:
+        raise wrong("--sea", f"gamma: from 1 to {MAX_ENHANCEMENT:g} expected, found {found['gamma']:g}")
+    if "spreading" in found:
+        check_exponent(found["spreading"], "--sea", "spreading: ")
+    return WaveSystem(**found)
+
+
+def asked(given: Mapping[str, Any], heading: float, options: dict[str, Any]) -> RequestedSea | None:
+    """The sea of `--sea`, `--sea-file` or `--spreading`; None where none of them is given. Raises BadParameter, InputError.
+
+    Args:
+        given: Options by name, those only that are given.
+        heading: Direction that the waves travel to (deg), of `--heading`.
+        options: Fields of `RequestedSea` that all seas have, but for the order.
+    """
+    many, file = given.get("--sea"), given.get("--sea-file")
+    if many and file:
+        raise wrong("--sea-file", "--sea says what the sea is: not both")
+    if "--x-bearing" in given and not file:
+        raise wrong("--x-bearing", "a directional spectrum expected with it, --sea-file FILE")
+    if name := next((one for one in OTHERS if one in given and (many or file)), None):
+        raise wrong(name, f"{'--sea' if many else '--sea-file'} says what the sea is: not both")
+    if (many or file) and heading != 0.0:
+        other = "heading= of --sea" if many else "--x-bearing"
+        raise wrong("--heading", f"the sea has its own: {other}")
+    if file:
+        bearing = finite(given.get("--x-bearing", 0.0), "--x-bearing")
+        measured = MeasuredDirections(str(file), read_directional_spectrum(Path(file), bearing), bearing)
+        hs, tp, mean = measured.summary()
+        order = given.get("--order", 1)
+        return RequestedSea(hs, tp, None, "measured", heading=mean, measured=measured, order=order, **options)
+    if many:
+        systems = tuple(system(text) for text in many)
+    elif "--spreading" in given:
+        systems = (_spread(given, heading),)
+    else:
+        return None
+    found = RequestedSea.of_systems(systems, order=given.get("--order", 1), **options)
+    return RequestedSea.of_systems(systems, order=given.get("--order", 2), **options) if found.long_crested else found
+
+
+def _spread(given: Mapping[str, Any], heading: float) -> WaveSystem:
+    """Wave system of `--hs`, `--tp` and `--spreading`, which were checked but for the last."""
+    if "--hs" not in given:
+        raise wrong("--spreading", "a sea expected with it: --hs 3.1 --tp 8.96")
+    shape = str(given.get("--spectrum", SHAPES[0]))
+    if shape not in SHAPES:
+        raise wrong("--spreading", f"a spectrum with a peak expected with it, found {shape}")
+    exponent = check_exponent(given["--spreading"], "--spreading")
+    return WaveSystem(positive(given["--hs"], "--hs"), given["--tp"], given.get("--gamma"), heading, exponent, shape)

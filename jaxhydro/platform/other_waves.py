@@ -1,0 +1,44 @@
+"""Tables of a platform file that were computed for other wave headings than those asked for."""
+
+from typing import Any, NamedTuple
+
+from jaxhydro.errors import InputError
+from jaxhydro.interop.table_headings import covers, spoken, table_headings
+from jaxhydro.interop.wamit_tables import same_heading
+
+
+class OtherWaves(NamedTuple):
+    """Table that was computed for other wave headings than one that is asked for.
+
+    Attributes:
+        key: What says the headings: a key of the platform file, or the headings of a file.
+        heading: The heading (deg), or headings in words.
+    """
+
+    key: str
+    heading: float | str
+
+    @property
+    def words(self) -> str:
+        """The heading or headings, in degrees."""
+        return self.heading if isinstance(self.heading, str) else f"{self.heading:g}"
+
+
+def other_waves(key: str, declared: Any, kind: str, heading: float) -> OtherWaves | None:
+    """What a table's headings are where they do not cover a wave heading; None where they do.
+
+    Headings between those of a file are interpolated. A file that cannot be read is left for where it is loaded.
+
+    Args:
+        key: Key of the table in the platform file.
+        declared: Its contents there, with `file`, `heading`, `by` and `body`.
+        kind: As in `table_headings`.
+        heading: Direction that the waves travel to (deg).
+    """
+    if declared.heading is not None:
+        return None if same_heading(declared.heading, heading) else OtherWaves(f"{key}.heading", declared.heading)
+    try:
+        known = table_headings(declared.file, kind, declared.by, declared.body)
+    except InputError:
+        return None
+    return None if covers(known, heading) else OtherWaves(f"headings of {key}.file", spoken(known))

@@ -1,0 +1,49 @@
+"""`jaxhydro simulate` in seas of several headings: an answer in words for every bad input, and what it writes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from test_cli import cache, run  # noqa: F401
+
+SHORT = ("--duration", 60, "--dt", 0.5, "--transient", 0, "--no-figures")
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (("--sea", "hs=2 tp=14 headin=30"), "found 'headin=30'. Did you mean"),
+        (("--sea", "tp=14"), "hs expected, as --sea"),
+        (("--sea", "hs=2 tp=x"), "a number after tp= expected, found 'x'"),
+        (("--sea", "hs=2 tp=9 spreading=-1"), "spreading: a number from 0 to 10000 expected, found -1"),
+        (("--sea", "hs=2 tp=9", "--hs", 2, "--tp", 9), "--sea says what the sea is: not both"),
+        (("--sea", "hs=2 tp=9", "--heading", 20), "the sea has its own: heading= of --sea"),
+        (("--hs", 2, "--tp", 9, "--spreading", -3), "a number from 0 to 10000 expected, found -3"),
+        (("--spreading", 3), "a sea expected with it"),
+        (("--hs", 2, "--tp", 9, "--x-bearing", 3), "a directional spectrum expected with it, --sea-file FILE"),
+        (("--sea-file", "none.csv"), "expected a CSV or NetCDF file, found no such file"),
+        (("--wave", "none.csv", "--spreading", 4), "a record of one gauge, which does not tell directions"),
+        (("--hs", 2, "--tp", 9, "--spreading", 4, "--order", 2), "100 components at most"),
+    ],
+)
+def test_bad_input_has_one_clear_message(tmp_path: Path, words: tuple, expected: str) -> None:
+    said = run("simulate", "oc3-hywind", *words, "--out", tmp_path / "out", status=2)
+    assert expected in said, said
+    assert not (tmp_path / "out" / "motion.csv").exists()
+
+
+def test_a_file_without_directions_is_told(tmp_path: Path) -> None:
+    (tmp_path / "flat.csv").write_text("freq,efth\n0.1,1\n0.2,1\n", encoding="utf-8")
+    said = run("simulate", "oc3-hywind", "--sea-file", tmp_path / "flat.csv", "--out", tmp_path / "out", status=2)
+    assert "expected a column dir, beside freq and efth, found freq, efth" in said, said
+
+
+def test_two_systems_move_a_platform(tmp_path: Path) -> None:
+    """Sway too; what was asked for is in the file."""
+    systems = ("--sea", "hs=2 tp=14 heading=30", "--sea", "hs=1.5 tp=7 heading=-40 spreading=8")
+    run("simulate", "oc3-hywind", *systems, *SHORT, "--out", tmp_path)
+    with xr.open_dataset(tmp_path / "simulated.nc") as data:
+        assert data.attrs["significant_wave_height"] == pytest.approx(2.5) and data.attrs["order"] == 1
+        assert -40 < data.attrs["mean_heading"] < 30 and data.attrs["directional_width"] > 10
+        assert float(np.std(data.simulated.sel(channel="sway"))) > 1e-3
