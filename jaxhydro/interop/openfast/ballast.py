@@ -72,16 +72,16 @@ def _filled(member: HydroDynMember, group: FillGroup) -> tuple[np.ndarray, np.nd
     length = float(np.linalg.norm(along))
     area = size[:, 0] * size[:, 1] * (math.pi / 4 if member.shape == "circ" else 1.0)
     mass = group.density * area * 0.5 * share * weight * length
-    x, y, z = _axes(along / length, math.radians(member.spin))
+    x, y = _axes(along / length, math.radians(member.spin))
     factor = 1 / 16 if member.shape == "circ" else 1 / 12  # of a thin slice: m d^2 / 16, m a^2 / 12
     second = factor * np.einsum("n,ni->i", mass, size**2)  # integrals of x^2 and y^2
     spread = second[0] * np.outer(x, x) + second[1] * np.outer(y, y)
     return mass, low + at[:, None] * along, np.trace(spread) * np.eye(3) - spread
 
 
-def _axes(axis: np.ndarray, spin: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """HydroDyn's local axes of a member (Morison_DirCosMtrx_Spin)."""
+def _axes(axis: np.ndarray, spin: float) -> tuple[np.ndarray, np.ndarray]:
+    """HydroDyn's local x and y of a member (Morison_DirCosMtrx_Spin)."""
     level = math.hypot(axis[0], axis[1])
     first = np.array([1.0, 0.0, 0.0]) if level < 1e-9 else np.array([axis[1], -axis[0], 0.0]) / level
     second = np.cross(axis, first)
-    return math.cos(spin) * first + math.sin(spin) * second, math.cos(spin) * second - math.sin(spin) * first, axis
+    return math.cos(spin) * first + math.sin(spin) * second, math.cos(spin) * second - math.sin(spin) * first

@@ -178,9 +178,7 @@ class KeyedFile:
         key = next((key for key in ([keys] if isinstance(keys, str) else keys) if self.has(key)), None)
         if key is None:
             return []
-        count, head = self.whole(key), self.line_of(key) + 1
-        if header:
-            head = self._header(header)
+        count, head = self.whole(key), self._header(header) if header else self.line_of(key) + 1
         self._used.update(range(head, head + 2 + count))
         return [self._row(head, head + 2 + i, f"row {i + 1} of {count} of {key}", layouts) for i in range(count)]
 
