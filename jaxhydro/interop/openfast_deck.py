@@ -134,7 +134,8 @@ def _mooring(deck: DeckFiles, water: WaterColumn, terms: AddedTerms, items: list
     if not preload.any() and not stiffness.any():
         return {}
     small = _SMALL * np.sqrt(np.outer(np.abs(np.diag(stiffness)), np.abs(np.diag(stiffness))))
-    rows = [[tidy(value) if abs(value) > least else 0.0 for value, least in zip(*both)] for both in zip(stiffness, small)]
+    kept = np.where(np.abs(stiffness) > small, stiffness, 0.0)
+    rows = [[tidy(value) for value in row] for row in kept]
     least = _SMALL * float(np.abs(preload).max())
     pulls = [tidy(value) if abs(value) > least else 0.0 for value in preload]
     return {"mooring": {"kind": "stiffness_matrix", "stiffness": rows, "preload": pulls}}

@@ -4,8 +4,9 @@ References:
     OpenFAST v5.0.0 (2895884), HydroDyn_Input.f90 (columns), Morison.f90: FlipMemberNodeData, Morison_DirCosMtrx_Spin.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from jaxtyping import Float
@@ -28,6 +29,7 @@ MEMBERS = {
     16: [*_MEMBERS, *_FILTER],
 }
 RECTANGULAR = 2  # MSecGeom
+Row = TypeVar("Row")
 
 
 @dataclass(frozen=True)
@@ -179,7 +181,7 @@ def read_fill_groups(file: KeyedFile, level: float, density: float, members: lis
     return groups
 
 
-def _of(rows: dict, row: TableRow, column: str, of: str):
+def _of(rows: Mapping[int, Row], row: TableRow, column: str, of: str) -> Row:
     if (number := row.whole(column)) not in rows:
         known = ", ".join(map(str, list(rows)[:20])) or "none"
         raise row.wrong(f"{column}: a {of} of the file ({known})", f"{number}")

@@ -128,8 +128,8 @@ def _across(member: HydroDynMember, own: MemberCoefficients, notes: MemberNotes)
             if np.ptp(pair) > _SAME * pair.max():
                 text = "A steep member has one coefficient for both directions: the mean of both was taken."
                 notes.add(member.number, what, Treatment.APPROXIMATED, text)
-        return {"Ca_t": tidy(mass.mean()), "Cd_t": tidy(drag.mean())}
-    return {"Ca_t": tidy(mass[0]), "Ca_z": tidy(mass[1]), "Cd_t": tidy(drag[0]), "Cd_z": tidy(drag[1])}
+        return {"Ca_t": tidy(float(mass.mean())), "Cd_t": tidy(float(drag.mean()))}
+    return {"Ca_t": tidy(float(mass[0])), "Ca_z": tidy(float(mass[1])), "Cd_t": tidy(drag[0]), "Cd_z": tidy(drag[1])}
 
 
 def _place(
