@@ -70,6 +70,13 @@ def check_folder(folder: str | os.PathLike[str], option: str = "--out") -> Path:
     return folder
 
 
+def check_new_folder(folder: Path, option: str, hint: str) -> None:
+    """Raise InputError where a folder is not empty, is a file, or cannot be made; `option` is named."""
+    check_folder(folder, option)
+    if is_there(folder) and any(folder.iterdir()):
+        raise InputError(str(folder), [Problem("", "a folder that is new or empty", "a folder that is not empty", hint)])
+
+
 @contextmanager
 def staged(folder: Path, obsolete: Callable[[Path], Iterable[str]] | None = None) -> Iterator[Path]:
     """Temporary folder whose files are moved into `folder` when the block ends well.

@@ -13,7 +13,7 @@ from calibration.new_campaign.draft_of_files import draft_of_files
 from calibration.new_campaign.draft_text import campaign_text
 from jaxhydro.cli.console import say, table
 from jaxhydro.errors import InputError, Problem, read_yaml
-from jaxhydro.files import MANIFEST, check_folder, is_there, staged
+from jaxhydro.files import MANIFEST, check_new_folder, staged
 from jaxhydro.platform.schema import Platform, builtin_platforms, builtin_text, load_platform
 
 PLATFORM_FILE = "platform.yaml"
@@ -33,7 +33,7 @@ def init_campaign(folder: Path, platform: str, scale: float | None, files: Seque
     Raises:
         InputError: The folder is not empty, or the platform or a data file cannot be used. Nothing is written.
     """
-    _check_new(folder)
+    check_new_folder(folder, "FOLDER", "Name a new folder; data files are copied into it.")
     description = load_platform(platform)
     source = Path(platform)
     text, beside = _platform_text(platform), [] if _is_builtin(platform) else list(_files_beside(source, description))
@@ -50,13 +50,6 @@ def init_campaign(folder: Path, platform: str, scale: float | None, files: Seque
             _copy(file, temporary / file.name)
     _print(draft, folder)
     return draft
-
-
-def _check_new(folder: Path) -> None:
-    check_folder(folder, "FOLDER")
-    if is_there(folder) and any(folder.iterdir()):
-        hint = "Name a new folder; data files are copied into it."
-        raise InputError(str(folder), [Problem("", "a folder that is new or empty", "a folder that is not empty", hint)])
 
 
 def _is_builtin(platform: str) -> bool:

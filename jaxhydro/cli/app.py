@@ -202,6 +202,21 @@ def init(
     init_campaign(folder, platform, scale, files or [])
 
 
+@app.command(epilog=arguments.CONVERTING)
+def convert(
+    source: Annotated[Path, typer.Argument(help="OpenFAST's main file, .fst.", metavar="SOURCE")],
+    out: Annotated[Path, typer.Option("--out", help="A new or an empty folder.")],
+) -> None:
+    """Make platform.yaml of another program's model, with a page that says what became of each item of it.
+
+    Of an OpenFAST deck: mass (ElastoDyn), members, coefficients, ballast and potential flow (HydroDyn), moorings (MoorDyn, as
+    a stiffness), water.
+    """
+    from jaxhydro.cli.convert_command import convert_model
+
+    convert_model(source, out)
+
+
 @app.command()
 def check(
     campaign: arguments.Campaign,

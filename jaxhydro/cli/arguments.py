@@ -25,6 +25,7 @@ EPILOG = "\n\n".join(
         "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --out sea",
         "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
         "jaxhydro sweep sweep.yaml --out life",
+        "jaxhydro convert deck/main.fst --out my-platform",
         "jaxhydro init my-campaign decays/*.csv --scale 70",
         "jaxhydro calibrate my-campaign --out results",
         "jaxhydro uncertainty my-campaign --calibration results/calibration.json --out uncertainty",
@@ -50,6 +51,16 @@ EXAMPLES = "\n\n".join(
     )
 )
 
+CONVERTING = "\n\n".join(
+    (
+        "[bold]Examples[/bold]",
+        "jaxhydro convert deck/main.fst --out my-platform",
+        "jaxhydro simulate my-platform/platform.yaml --release heave=1",
+        "[bold]What it writes[/bold]",
+        "platform.yaml, copies of the tables that it names, and conversion.md: what was taken, approximated and left out. "
+        "A folder that is not empty is refused. Exit status: 0 done; 2 the input is wrong, and nothing was written.",
+    )
+)
 STARTING = "\n\n".join(
     (
         "[bold]Examples[/bold]",

@@ -1,0 +1,76 @@
+"""Command `convert`: a platform file from another program's model."""
+
+import shutil
+from pathlib import Path
+
+from jaxhydro.cli.console import say
+from jaxhydro.dynamics.model import Model
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.files import check_new_folder, staged
+from jaxhydro.interop.conversion import Conversion, Treatment
+from jaxhydro.interop.converters import convert_file
+from jaxhydro.interop.platform_text import conversion_page, platform_text
+from jaxhydro.platform.build import build
+from jaxhydro.platform.schema import load_platform
+
+PLATFORM_FILE, PAGE = "platform.yaml", "conversion.md"
+MAX_TOLD = 12  # approximated items that are printed before the page is named
+
+
+def convert_model(source: Path, folder: Path) -> None:
+    """Write platform.yaml, the files that it names and conversion.md, and print a summary.
+
+    The platform is loaded and built before anything is written.
+
+    Args:
+        source: The other program's file.
+        folder: A new or an empty folder.
+
+    Raises:
+        InputError: The folder is not empty, or the source cannot be used. Nothing is written.
+    """
+    check_new_folder(folder, "--out", "Name a new folder.")
+    conversion = convert_file(source)
+    with staged(folder) as temporary:
+        (temporary / PLATFORM_FILE).write_text(platform_text(conversion, str(source)), encoding="utf-8")
+        (temporary / PAGE).write_text(conversion_page(conversion, source.name), encoding="utf-8")
+        for name, path in conversion.files.items():
+            _copy(path, temporary / name)
+        model = _built(temporary, source)
+    _print(conversion, model, source, folder)
+
+
+def _built(folder: Path, source: Path) -> Model:
+    """The model of the platform file that was written, to see that it can be used."""
+    try:
+        return build(load_platform(folder / PLATFORM_FILE))
+    except InputError as error:
+        inside = str(folder)
+        problems = [Problem(p.where, p.expected, p.found.replace(inside, ""), p.hint) for p in error.problems]
+        raise InputError(f"{source}, as {PLATFORM_FILE}", problems) from None
+
+
+def _copy(source: Path, target: Path) -> None:
+    try:
+        shutil.copyfile(source, target)
+    except OSError as error:
+        raise InputError(str(source), [Problem("", "a file that can be copied", error.strerror or str(error))]) from None
+
+
+def _print(conversion: Conversion, model: Model, source: Path, folder: Path) -> None:
+    counts = {kind: sum(item.treatment is kind for item in conversion.items) for kind in Treatment}
+    told = ", ".join(f"{number} {kind}" for kind, number in counts.items())
+    say(f"{folder} is made from {source}: {told}.", "bold")
+    close = [item for item in conversion.items if item.treatment is Treatment.APPROXIMATED]
+    for item in close[:MAX_TOLD]:
+        say(f"approximated: {item.source}: {item.meaning}")
+    if len(close) > MAX_TOLD:
+        say(f"and {len(close) - MAX_TOLD} more.")
+    if left := [item.source for item in conversion.items if item.treatment is Treatment.LEFT_OUT]:
+        say(f"left out: {'; '.join(left)}.")
+    for remark in model.remarks:
+        if remark.warning:
+            say(f"warning: {remark.text.replace(str(folder.parent), '')}")
+    say(f"1. Read {folder / PAGE}: it says what became of each item.")
+    say(f"2. Try it: jaxhydro simulate {folder / PLATFORM_FILE} --release heave=1")
+    say(f"3. To calibrate it to records: jaxhydro init NEW_FOLDER DATA_FILES --platform {folder / PLATFORM_FILE}")

@@ -1,0 +1,1 @@
+"""OpenFAST input files: one file for each of OpenFAST's modules."""

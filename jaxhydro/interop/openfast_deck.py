@@ -1,0 +1,171 @@
+"""A platform from an OpenFAST deck: ElastoDyn, HydroDyn, SeaState and MoorDyn.
+
+The files are read by their keys, by a reader of our own: `openfast_io` reads by line number, so that decks of other versions
+and decks without their blade files stop it.
+"""
+
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
+from jaxhydro.interop.line_linearisation import NoCatenary, linearised
+from jaxhydro.interop.openfast.added_terms import AddedTerms, read_added_terms
+from jaxhydro.interop.openfast.ballast import ballast_parts
+from jaxhydro.interop.openfast.coefficient_tables import CoefficientTables
+from jaxhydro.interop.openfast.deck_files import DeckFiles, WaterColumn, module_items, open_deck, water_of
+from jaxhydro.interop.openfast.deck_sea import sea_items
+from jaxhydro.interop.openfast.elastodyn import read_parts
+from jaxhydro.interop.openfast.hull_tables import read_fill_groups, read_joints, read_members
+from jaxhydro.interop.openfast.keyed_file import KeyedFile
+from jaxhydro.interop.openfast.mass_parts import tidy
+from jaxhydro.interop.openfast.moordyn_file import read_mooring_system
+from jaxhydro.interop.openfast.potential_flow import PotentialFlow, read_potential_flow
+from jaxhydro.interop.openfast.strip_members import convert_members
+
+POTENTIAL_FLOW = 1  # PotMod
+_SMALL = 1e-9  # of the largest entry of a stiffness: what rounding leaves
+
+
+def read_openfast_deck(path: str | PathLike[str]) -> Conversion:
+    """Platform of an OpenFAST deck, and what became of each item of it.
+
+    Args:
+        path: The deck's main file, `.fst`.
+
+    Returns:
+        Contents of a platform file, with heights above still water, in SI units.
+
+    Raises:
+        InputError: A file is missing or broken; file and line are named.
+    """
+    deck = open_deck(Path(path))
+    water = water_of(deck)
+    items = [_water_item(deck, water), *module_items(deck.main)]
+    turbine = read_parts(deck.elastodyn, water.level)
+    parts, items = list(turbine.parts), [*items, *turbine.items]
+    platform: dict[str, Any] = {
+        "name": deck.main.path.resolve().parent.name if deck.main.path.stem.lower() == "main" else deck.main.path.stem,
+        "water": {"density": water.density, "depth": water.depth, "gravity": water.gravity},
+        "rigid_body": {},
+    }
+    terms, flow = AddedTerms(), PotentialFlow()
+    if deck.hydrodyn is not None:
+        ballast, terms, flow = _hydrodyn(deck, deck.hydrodyn, water, platform, items)
+        parts += ballast
+    platform["rigid_body"] |= _body(parts)
+    platform |= {"linear_damping": terms.linear} if terms.linear else {}
+    platform |= {"quadratic_damping": terms.quadratic} if terms.quadratic else {}
+    platform |= {key: flow.keys[key] for key in ("added_mass",) if key in flow.keys}
+    platform |= _mooring(deck, water, terms, items)
+    platform |= {key: value for key, value in flow.keys.items() if key != "added_mass"}
+    if platform.get("members"):
+        platform |= _forms(deck, items)
+    if deck.waves is not None:
+        items += sea_items(deck.waves)
+    items += [item for file in deck.all() for item in _of_version(file)]
+    return Conversion(platform, tuple(items), flow.files)
+
+
+def _hydrodyn(
+    deck: DeckFiles, file: KeyedFile, water: WaterColumn, platform: dict[str, Any], items: list[ConvertedItem]
+) -> tuple[list[dict[str, Any]], AddedTerms, PotentialFlow]:
+    """Add members and coefficients to a platform; ballast, additional terms and potential flow."""
+    members = read_members(file, read_joints(file, water.level))
+    mode = file.whole("PotMod")
+    hull = convert_members(members, CoefficientTables(file, water.level), mode == POTENTIAL_FLOW)
+    items += hull.items
+    platform |= {"members": hull.members, "coefficients": hull.coefficients} if hull.members else {}
+    platform["diffraction"] = "maccamy_fuchs" if hull.diffracting else "none"
+    groups = read_fill_groups(file, water.level, water.density, members)
+    ballast, said = ballast_parts(groups, members, file.name)
+    items += said
+    if file.has("NMGDepths") and file.whole("NMGDepths"):
+        text = "Marine growth has no counterpart: neither its mass nor its thickness nor its coefficients."
+        items.append(ConvertedItem(f"{file.name}: NMGDepths", Treatment.LEFT_OUT, text))
+    terms = read_added_terms(file, mode == POTENTIAL_FLOW)
+    items += terms.items
+    flow = PotentialFlow()
+    if mode == POTENTIAL_FLOW:
+        wet = any(not member.potential and member.joints[0].place[2] < 0.0 for member in members)
+        heading = 0.0 if deck.waves is None else deck.waves.number("WaveDir", 0.0)
+        flow = read_potential_flow(file, water.density, heading, wet)
+        items += flow.items
+    elif mode:
+        items.append(ConvertedItem(f"{file.name}: PotMod", Treatment.LEFT_OUT, f"Potential flow of PotMod {mode} is not read."))
+    return ballast, terms, flow
+
+
+def _water_item(deck: DeckFiles, water: WaterColumn) -> ConvertedItem:
+    text = f"`water`: {water.density:g} kg/m³, {water.depth:g} m, {water.gravity:g} m/s²."
+    if water.level:
+        text += f" Heights were counted from mean sea level, {water.level:g} m below still water, and are now from still water."
+    return ConvertedItem(f"{deck.main.name}: WtrDens, WtrDpth, Gravity, MSL2SWL", Treatment.TAKEN, text)
+
+
+def _body(parts: list[dict[str, Any]]) -> dict[str, Any]:
+    """`rigid_body`: of one part its own mass, centre and inertia."""
+    if len(parts) == 1 and "inertia" in parts[0]:
+        return {key: parts[0][key] for key in ("mass", "centre_of_mass", "inertia")}
+    return {"parts": parts}
+
+
+def _mooring(deck: DeckFiles, water: WaterColumn, terms: AddedTerms, items: list[ConvertedItem]) -> dict[str, Any]:
+    """`mooring` of MoorDyn's lines, linearised, and of HydroDyn's additional terms."""
+    preload, stiffness = terms.preload, terms.stiffness
+    if (file := deck.moordyn) is not None:
+        system, said = read_mooring_system(file, water.level)
+        items += said
+        where = f"{file.name}: LINES {', '.join(system.lines)}"
+        try:
+            pull, slope = linearised(system, water.density, water.depth, water.gravity)
+        except NoCatenary as error:
+            text = f"The mooring is left out: {error}. Give `mooring` by hand."
+            items.append(ConvertedItem(where, Treatment.LEFT_OUT, text))
+        else:
+            preload, stiffness = preload + pull, stiffness + slope
+            text = (
+                "`mooring`: stiffness and pull of the elastic catenaries at the reference position, without friction on the "
+                "bed. Their drag, inertia and large offsets are lost."
+            )
+            items.append(ConvertedItem(where, Treatment.APPROXIMATED, text))
+    if not preload.any() and not stiffness.any():
+        return {}
+    small = _SMALL * np.sqrt(np.outer(np.abs(np.diag(stiffness)), np.abs(np.diag(stiffness))))
+    kept = np.where(np.abs(stiffness) > small, stiffness, 0.0)
+    rows = [[tidy(value) for value in row] for row in kept]
+    least = _SMALL * float(np.abs(preload).max())
+    pulls = [tidy(value) if abs(value) > least else 0.0 for value in preload]
+    return {"mooring": {"kind": "stiffness_matrix", "stiffness": rows, "preload": pulls}}
+
+
+def _forms(deck: DeckFiles, items: list[ConvertedItem]) -> dict[str, Any]:
+    """Forms of the strip loads as HydroDyn has them."""
+    if (file := deck.hydrodyn) is None:
+        return {}
+    text = "`directions: earth`: HydroDyn loads strips along the axes of the upright platform."
+    items.append(ConvertedItem(f"{file.name}: strips", Treatment.TAKEN, text))
+    mode = "WaveDisp" if file.has("WaveDisp") else "ExctnDisp"
+    moving = file.whole(mode, 0) > 0
+    place = "displaced" if moving else "mean"
+    items.append(ConvertedItem(f"{file.name}: {mode}", Treatment.TAKEN, f"`waves_at: {place}`."))
+    stretching = deck.waves.whole("WaveStMod", 0) if deck.waves is not None else 0
+    wetting = "instantaneous" if stretching else "mean"
+    where = f"{(deck.waves or file).name}: WaveStMod"
+    items.append(ConvertedItem(where, Treatment.TAKEN, f"`wetting: {wetting}`."))
+    return {"wetting": wetting, "directions": "earth", "waves_at": place}
+
+
+def _of_version(file: KeyedFile) -> list[ConvertedItem]:
+    """Keys that this version of a file has not, and those that were not used."""
+    items = []
+    if file.absent:
+        listed = ", ".join(f"{key} ({value or 'nothing'})" for key, value in file.absent.items())
+        text = f"This version of the file has no such key. Taken instead: {listed}."
+        items.append(ConvertedItem(f"{file.name}: keys of other versions", Treatment.APPROXIMATED, text))
+    if unused := file.unused():
+        text = f"Not used: {', '.join(unused)}."
+        items.append(ConvertedItem(f"{file.name}: other keys", Treatment.LEFT_OUT, text))
+    return items

@@ -1,0 +1,77 @@
+"""Text of a platform file, and of the page that says what became of a source, from a conversion."""
+
+from io import StringIO
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
+
+WIDTH = 160  # characters of a line of YAML
+HEADINGS = {Treatment.TAKEN: "Taken", Treatment.APPROXIMATED: "Approximated", Treatment.LEFT_OUT: "Left out"}
+_HEAD = """\
+# Made by `jaxhydro convert` from {source}.
+# conversion.md says what was taken, what was approximated and what was left out. All keys: docs/formats.md.
+# SI units. x, y horizontal, z up from still water; inertia about the centre of mass.
+"""
+
+
+def platform_text(conversion: Conversion, source: str) -> str:
+    """Text of the platform file of a conversion.
+
+    Args:
+        conversion: The conversion.
+        source: Name of what was converted, for the header.
+    """
+    yaml, out = YAML(), StringIO()
+    yaml.width = WIDTH
+    yaml.dump(_laid_out(conversion.platform), out)
+    return _HEAD.format(source=" ".join(source.split())) + out.getvalue()
+
+
+def _laid_out(value: Any) -> Any:
+    """Mappings and lists, those without further ones in one line."""
+    if isinstance(value, dict):
+        mapping = CommentedMap({key: _laid_out(one) for key, one in value.items()})
+        if not any(isinstance(one, dict) or _nested(one) for one in value.values()):
+            mapping.fa.set_flow_style()
+        return mapping
+    if isinstance(value, list | tuple):
+        row = CommentedSeq([_laid_out(one) for one in value])
+        if not _nested(value):
+            row.fa.set_flow_style()
+        return row
+    return value
+
+
+def _nested(value: Any) -> bool:
+    return isinstance(value, list | tuple) and any(isinstance(one, dict | list | tuple) for one in value)
+
+
+def conversion_page(conversion: Conversion, source: str) -> str:
+    """Page that says what became of each item of a source, in Markdown.
+
+    Args:
+        conversion: The conversion.
+        source: Name of what was converted.
+    """
+    counts = {kind: sum(item.treatment is kind for item in conversion.items) for kind in Treatment}
+    told = ", ".join(f"{number} {kind}" for kind, number in counts.items())
+    lines = [f"# {_plain(source)} as platform.yaml", "", f"{len(conversion.items)} items: {told}."]
+    for kind, heading in HEADINGS.items():
+        if items := [item for item in conversion.items if item.treatment is kind]:
+            lines += ["", f"## {heading}", "", "| source | meaning |", "|---|---|", *map(_row, items)]
+    if conversion.files:
+        lines += ["", "## Copied files", "", "| file | from |", "|---|---|"]
+        lines += [f"| {_plain(name)} | {_plain(str(path))} |" for name, path in conversion.files.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _row(item: ConvertedItem) -> str:
+    return f"| {_plain(item.source)} | {_plain(item.meaning)} |"
+
+
+def _plain(text: str) -> str:
+    """Text as it stands in a cell of a table."""
+    return " ".join(text.split()).replace("|", "\\|")

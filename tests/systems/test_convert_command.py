@@ -1,0 +1,122 @@
+"""`jaxhydro convert`: what it writes, and the same motions as of a platform made by hand."""
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+import jaxhydro as jh
+from jaxhydro.cli import app as cli
+from jaxhydro.dynamics.response import decay_cycles
+from jaxhydro.interop.openfast_deck import read_openfast_deck
+from jaxhydro.platform.schema import Platform, load_platform
+
+DECK = Path(__file__).resolve().parents[1] / "fixtures" / "openfast_deck"
+REFERENCE = Path(__file__).resolve().parents[3] / "shared" / "reference"
+IEA15 = REFERENCE / "iea15-umaine" / "IEA-15-240-RWT-UMaineSemi.fst"
+with_reference = pytest.mark.skipif(not REFERENCE.exists(), reason=f"OpenFAST's decks and runs are not at {REFERENCE}")
+
+
+def run(*words: object, status: int = 0) -> str:
+    """The output of a command in one line, after a check of its exit status."""
+    result = CliRunner().invoke(cli.app, [str(word) for word in words])
+    text = " ".join(re.sub("[│╭╮╰╯─]", " ", result.output).split())
+    assert result.exit_code == status, text
+    assert isinstance(result.exception, SystemExit | None) and "Traceback" not in text
+    return text
+
+
+def test_it_writes_a_platform_and_says_what_became_of_the_deck(tmp_path: Path) -> None:
+    text = run("convert", DECK / "main.fst", "--out", tmp_path / "new")
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == ["conversion.md", "platform.yaml"]
+    conversion = read_openfast_deck(DECK / "main.fst")
+    assert load_platform(tmp_path / "new" / "platform.yaml") == Platform.model_validate(conversion.platform)
+    page = (tmp_path / "new" / "conversion.md").read_text(encoding="utf-8")
+    assert page.count("\n| ") == len(conversion.items) + 3  # and a heading of each of three tables
+    assert all(item.source in page for item in conversion.items)
+    assert f"{len(conversion.items)} items" in page and "taken" in text and "moordyn.dat: LINES 1, 2" in text
+    assert (tmp_path / "new" / "platform.yaml").read_text(encoding="utf-8").startswith("# Made by `jaxhydro convert`")
+
+
+def test_a_folder_that_is_not_empty_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    assert "a folder that is new or empty" in run("convert", DECK / "main.fst", "--out", tmp_path, status=2)
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_broken_input_writes_nothing(tmp_path: Path) -> None:
+    deck = shutil.copytree(DECK, tmp_path / "deck")
+    text = (deck / "hydrodyn.dat").read_text(encoding="utf-8")
+    (deck / "hydrodyn.dat").write_text(text.replace("  11        1         2 ", "  11        1        77 "), encoding="utf-8")
+    told = run("convert", deck / "main.fst", "--out", tmp_path / "new", status=2)
+    assert "hydrodyn.dat: line" in told and "found 77" in told
+    assert not (tmp_path / "new").exists() and [path.name for path in tmp_path.iterdir()] == ["deck"]
+
+
+def test_a_deck_that_is_no_platform_writes_nothing(tmp_path: Path) -> None:
+    """A damping that gives energy is read, but no platform file may have it."""
+    deck = shutil.copytree(DECK, tmp_path / "deck")
+    text = (deck / "hydrodyn.dat").read_text(encoding="utf-8")
+    (deck / "hydrodyn.dat").write_text(text.replace(" 2.0E4  0  0  0  1.0E5", "-2.0E4  0  0  0  1.0E5"), encoding="utf-8")
+    told = run("convert", deck / "main.fst", "--out", tmp_path / "new", status=2)
+    assert "linear_damping" in told and "main.fst, as platform.yaml" in told and not (tmp_path / "new").exists()
+
+
+def test_other_files_are_answered_in_words(tmp_path: Path) -> None:
+    assert "OpenFAST main file (.fst)" in run("convert", DECK / "hydrodyn.dat", "--out", tmp_path / "a", status=2)
+    assert "Did you mean" in run("convert", DECK / "mian.fst", "--out", tmp_path / "a", status=2)
+    assert "Name the file in it" in run("convert", DECK, "--out", tmp_path / "a", status=2)
+
+
+@with_reference
+def test_the_public_deck_of_the_15_mw_platform() -> None:
+    """The catenaries' stiffness is that which WAMIT's files of the same deck were made with (volturnus-s.yaml)."""
+    conversion = read_openfast_deck(IEA15)
+    platform, mine = Platform.model_validate(conversion.platform), load_platform("volturnus-s")
+    assert isinstance(platform.mooring, jh.platform.schema.StiffnessMatrix)
+    assert isinstance(mine.mooring, jh.platform.schema.StiffnessMatrix)
+    own, found = mine.mooring.matrix(), platform.mooring.matrix()
+    assert np.abs(found - own).max() < 2e-3 * np.abs(own).max()
+    assert np.diag(found) == pytest.approx(np.diag(own), rel=2e-3)
+    assert platform.mooring.preload[2] == pytest.approx(mine.mooring.preload[2], rel=5e-3)
+    assert platform.hydrostatics.displaced_volume == pytest.approx(mine.hydrostatics.displaced_volume, rel=1e-4)
+    # the public deck has other masses than the report; its blade file is not there: three of 65 t
+    mass, _, _ = platform.rigid_body.combined()
+    assert mass + 3 * 65e3 == pytest.approx(20.24e6, rel=2e-3)
+    assert set(conversion.files) == {f"{IEA15.stem}{ending}" for ending in (".hst", ".1", ".3", ".12d")}
+
+
+@with_reference
+def test_a_deck_is_the_platform_made_by_hand() -> None:
+    platform = Platform.model_validate(read_openfast_deck(REFERENCE / "openfast" / "ss1_c1" / "main.fst").platform)
+    mine = load_platform("volturnus-s")
+    (mass, centre, inertia), (own_mass, own_centre, own_inertia) = platform.rigid_body.combined(), mine.rigid_body.combined()
+    assert mass == own_mass and centre == pytest.approx(own_centre) and inertia == pytest.approx(own_inertia, rel=1e-5)
+    for group in ("column", "pontoon"):
+        assert platform.coefficients[group].numbers() == pytest.approx(mine.coefficients[group].numbers(), rel=2e-8)
+    assert platform.linear_damping.matrix() == pytest.approx(mine.linear_damping.matrix())
+
+
+@with_reference
+@pytest.mark.slow
+@pytest.mark.parametrize("dof, channel", [("heave", "PtfmHeave"), ("pitch", "PtfmPitch")])
+def test_motions_of_a_converted_deck(dof: str, channel: str) -> None:
+    """Decays as OpenFAST has them, as close as those of the platform made by hand (`test_openfast`)."""
+    folder = REFERENCE / "openfast" / f"decay_{dof}_strip"
+    table = pd.read_csv(folder / "out.csv.gz", skiprows=[1]).astype(float)
+    start = np.array(json.loads((folder / "setup.json").read_text(encoding="utf-8"))["q0"], dtype=float)
+    unit = np.pi / 180 if dof == "pitch" else 1.0
+    start[3:] *= np.pi / 180
+    times, motion = table["Time"].to_numpy(), table[channel].to_numpy() * unit
+    reference = decay_cycles(times, motion)
+    ten = times <= reference.time[0] + 10 * reference.period[0]
+    times, motion = times[ten], motion[ten]
+    platform = Platform.model_validate(read_openfast_deck(folder / "main.fst").platform)
+    found = np.asarray(jh.simulate(jh.build(platform), times, position=jnp.asarray(start), step=0.5)[dof])
+    assert np.abs(found - motion).max() < 2e-3 * np.abs(start).max()
