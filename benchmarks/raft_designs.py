@@ -14,6 +14,8 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from ruamel.yaml import YAML
@@ -40,6 +42,16 @@ def model_of(conversion: Conversion) -> Model:
         path = Path(folder) / "platform.yaml"
         YAML().dump(conversion.platform, path)
         return jh.build(jh.load_platform(path))
+
+
+def stiffness_of_lines(model: Model) -> list[list[float]] | None:
+    """Stiffness (6, 6) of catenaries at the reference position; None without them."""
+    others = tuple(load for load in model.loads if not isinstance(load, jh.loads.CatenaryLines))
+    if len(others) == len(model.loads):
+        return None
+    without = eqx.tree_at(lambda m: m.loads, model, others)
+    whole, rest = (jax.jacfwd(lambda q, m=m: m.force_at_rest(q))(jnp.zeros(6)) for m in (model, without))
+    return (-np.asarray(whole - rest)).tolist()
 
 
 def periods(mass: np.ndarray, stiffness: np.ndarray) -> dict[str, float]:
@@ -183,8 +195,9 @@ def main() -> None:
     results = json.loads(RAW.read_text("utf-8")) if given.only else {}
     for name in given.only or raft:
         conversion = read_raft_design(given.folder / name)
-        found: dict[str, Any] = {"converted": worked_out(model_of(conversion), name in BUILT_IN)}
-        found["mooring_stiffness"] = conversion.platform.get("mooring", {}).get("stiffness")
+        model = model_of(conversion)
+        found: dict[str, Any] = {"converted": worked_out(model, name in BUILT_IN)}
+        found["mooring_stiffness"] = stiffness_of_lines(model)
         found["yaw_stiffness"] = conversion.platform.get("stiffness", {}).get("C66", 0.0)
         found["items"] = [{"source": i.source, "treatment": i.treatment.value, "meaning": i.meaning} for i in conversion.items]
         if name in BUILT_IN:

@@ -9,6 +9,8 @@ from jaxhydro.interop.conversion import Conversion
 
 READERS = {  # ending -> what it is, module of this folder, its function of a path
     ".fst": ("an OpenFAST main file", "openfast_deck", "read_openfast_deck"),
+    ".yaml": ("a RAFT design", "raft_design", "read_raft_design"),
+    ".yml": ("a RAFT design", "raft_design", "read_raft_design"),
 }
 
 

@@ -114,18 +114,21 @@ def catenary_section(system: MooringSystem, depth: float, density: float, gravit
     if abs(system.depth - depth) > ON_SEABED * depth:
         raise NoCatenaries(f"its sea bed is {system.depth:g} m deep, and the water {depth:g} m")
     left = dict(system.lines)
-    rows = []
+    rows: list[dict[str, Any]] = []
+    used: dict[str, None] = {}  # types in the order of the lines
     for anchor in (point for point in system.points.values() if point.attachment is Attachment.GROUND):
         while path := _path(system, left, anchor):
             fairlead, segments = path
+            used |= dict.fromkeys(segment["type"] for segment in segments)
             rows.append({"anchor": [*anchor.position], "fairlead": [*fairlead.position], "segments": segments})
     if left:
         raise NoCatenaries(f"line {next(iter(left))} does not run from the ground to the platform")
-    used = {segment["type"] for row in rows for segment in row["segments"]}
+    types = {}
     for name in used:
-        if (weight := system.line_types[name].weight_in_water(density, gravity)) <= 0.0:
+        kind = system.line_types[name]
+        if (weight := kind.weight_in_water(density, gravity)) <= 0.0:
             raise NoCatenaries(f"lines of type {name} float: {weight:.4g} N/m in water")
-    types = {name: _line_type(kind, density, gravity) for name, kind in system.line_types.items() if name in used}
+        types[name] = {"axial_stiffness": kind.axial_stiffness, "submerged_weight": float(f"{weight:.9g}")}
     return {"kind": "catenary", "line_types": types, "lines": rows}
 
 
@@ -148,13 +151,3 @@ def _path(
     if not segments:
         return None
     raise NoCatenaries(f"the line from point {anchor.name} ends at point {point.name}, which is not on the platform")
-
-
-def _line_type(kind: LineType, density: float, gravity: float) -> dict[str, float]:
-    if kind.diameter > 0.0:
-        return {
-            "axial_stiffness": kind.axial_stiffness,
-            "mass_per_length": kind.mass_per_length,
-            "diameter": kind.diameter,
-        }
-    return {"axial_stiffness": kind.axial_stiffness, "submerged_weight": kind.weight_in_water(density, gravity)}

@@ -8,11 +8,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
-from jaxhydro.interop.line_linearisation import NoCatenary, linearised
-from jaxhydro.interop.openfast.added_terms import AddedTerms, read_added_terms
+from jaxhydro.interop.mooring_system import NoCatenaries, catenary_section
+from jaxhydro.interop.openfast.added_terms import AddedTerms, matrix_entries, read_added_terms
 from jaxhydro.interop.openfast.ballast import ballast_parts
 from jaxhydro.interop.openfast.coefficient_tables import CoefficientTables
 from jaxhydro.interop.openfast.deck_files import DeckFiles, WaterColumn, module_items, open_deck, water_of
@@ -26,7 +24,6 @@ from jaxhydro.interop.openfast.potential_flow import PotentialFlow, read_potenti
 from jaxhydro.interop.openfast.strip_members import convert_members
 
 POTENTIAL_FLOW = 1  # PotMod
-_SMALL = 1e-9  # of the largest entry of a stiffness: what rounding leaves
 
 
 def read_openfast_deck(path: str | PathLike[str]) -> Conversion:
@@ -113,32 +110,33 @@ def _body(parts: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _mooring(deck: DeckFiles, water: WaterColumn, terms: AddedTerms, items: list[ConvertedItem]) -> dict[str, Any]:
-    """`mooring` of MoorDyn's lines, linearised, and of HydroDyn's additional terms."""
-    preload, stiffness = terms.preload, terms.stiffness
-    if (file := deck.moordyn) is not None:
-        system, said = read_mooring_system(file, water.level)
-        items += said
-        where = f"{file.name}: LINES {', '.join(system.lines)}"
-        try:
-            pull, slope = linearised(system, water.density, water.depth, water.gravity)
-        except NoCatenary as error:
-            text = f"The mooring is left out: {error}. Give `mooring` by hand."
-            items.append(ConvertedItem(where, Treatment.LEFT_OUT, text))
-        else:
-            preload, stiffness = preload + pull, stiffness + slope
-            text = (
-                "`mooring`: stiffness and pull of the elastic catenaries at the reference position, without friction on the "
-                "bed. Their drag, inertia and large offsets are lost."
-            )
-            items.append(ConvertedItem(where, Treatment.APPROXIMATED, text))
-    if not preload.any() and not stiffness.any():
+    """MoorDyn's lines as catenaries, HydroDyn's additional stiffness beside them; or its stiffness and preload alone."""
+    if lines := _lines(deck, water, items):
+        if terms.preload.any():
+            text = "A constant force beside catenaries has no counterpart."
+            items.append(ConvertedItem(f"{deck.main.name}: AddF0", Treatment.LEFT_OUT, text))
+        return {"mooring": lines} | ({"stiffness": matrix_entries("C", terms.stiffness)} if terms.stiffness.any() else {})
+    if not terms.preload.any() and not terms.stiffness.any():
         return {}
-    small = _SMALL * np.sqrt(np.outer(np.abs(np.diag(stiffness)), np.abs(np.diag(stiffness))))
-    kept = np.where(np.abs(stiffness) > small, stiffness, 0.0)
-    rows = [[tidy(value) for value in row] for row in kept]
-    least = _SMALL * float(np.abs(preload).max())
-    pulls = [tidy(value) if abs(value) > least else 0.0 for value in preload]
-    return {"mooring": {"kind": "stiffness_matrix", "stiffness": rows, "preload": pulls}}
+    rows = [[tidy(value) for value in row] for row in terms.stiffness]
+    return {"mooring": {"kind": "stiffness_matrix", "stiffness": rows, "preload": [tidy(value) for value in terms.preload]}}
+
+
+def _lines(deck: DeckFiles, water: WaterColumn, items: list[ConvertedItem]) -> dict[str, Any] | None:
+    if (file := deck.moordyn) is None:
+        return None
+    system, said = read_mooring_system(file, water.level, water.depth)
+    items += said
+    where = f"{file.name}: LINES {', '.join(system.lines)}"
+    try:
+        section = catenary_section(system, water.depth, water.density, water.gravity)
+    except NoCatenaries as error:
+        text = f"The mooring is left out: {error}. Give `mooring` by hand."
+        items.append(ConvertedItem(where, Treatment.LEFT_OUT, text))
+        return None
+    text = "`mooring`: elastic catenaries in static balance. Their drag, inertia, damping and bending are left out."
+    items.append(ConvertedItem(where, Treatment.APPROXIMATED, text))
+    return section
 
 
 def _forms(deck: DeckFiles, items: list[ConvertedItem]) -> dict[str, Any]:

@@ -12,9 +12,8 @@ from typing import Any, TypeVar
 from pydantic import BaseModel
 
 from jaxhydro.errors import InputError, Problem, read_yaml, shown, suggest, validate
-from jaxhydro.interop.catenary_line import CatenaryError
 from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
-from jaxhydro.interop.mooring_linearisation import LinearMooring, linearised
+from jaxhydro.interop.mooring_system import NoCatenaries, catenary_section
 from jaxhydro.interop.raft_hull import HullMember, hull_member
 from jaxhydro.interop.raft_masses import effect_part, member_parts, rotor_parts
 from jaxhydro.interop.raft_member import RaftMember
@@ -201,18 +200,14 @@ class _Converter:
                 self.tell("mooring.file", LEFT_OUT, f"lines of another program's file, {shown(section['file'])}")
             return {}
         system = self.mooring.system(site.water_depth)
-        if system.depth != site.water_depth:
-            meaning = f"the lines are in {system.depth:g} m of water, the waves in {site.water_depth:g} m (site), as in RAFT"
-            self.tell("mooring.water_depth", APPROXIMATED, meaning)
+        density = self.mooring.rho or self.mooring.water_density or site.rho_water
         try:
-            linear = linearised(system, site.rho_water, site.g)
-        except CatenaryError as error:
+            found = catenary_section(system, site.water_depth, density, site.g)
+        except NoCatenaries as error:
             self.tell("mooring", LEFT_OUT, f"nothing holds the platform: {error}")
             return {}
-        tensions = f"{min(linear.tensions) / 1e3:.4g} to {max(linear.tensions) / 1e3:.4g} kN at the fairleads"
-        meaning = f"{len(system.lines)} catenaries, linear about the reference position ({tensions}); without drag and inertia"
-        self.tell("mooring", APPROXIMATED, meaning)
-        return {"mooring": _stiffness_matrix(linear)}
+        self.tell("mooring", TAKEN, f"{len(found['lines'])} elastic catenaries in static balance, as MoorPy has them")
+        return {"mooring": found}
 
     def _rest(self) -> None:
         platform, design = self.design.platform, self.design
@@ -226,18 +221,3 @@ class _Converter:
             self.tell(
                 key, LEFT_OUT, "not the platform: a run of RAFT, or a farm" if known else "no part of a design that is read"
             )
-
-
-def _stiffness_matrix(linear: LinearMooring) -> dict[str, Any]:
-    """The platform file's linear mooring; entries that are nothing beside their row and column are 0."""
-    size = abs(linear.stiffness.diagonal()) ** 0.5
-    small = 1e-9 * size[:, None] * size[None, :]
-    rows = [
-        [0.0 if abs(x) < least else float(f"{x:.9g}") for x, least in zip(row, limits)]
-        for row, limits in zip(linear.stiffness, small)
-    ]
-    force = float(abs(linear.preload[:3]).max())
-    moment = max(float(abs(linear.preload[3:]).max()), force)
-    limits = [1e-9 * force] * 3 + [1e-9 * moment] * 3
-    preload = [0.0 if abs(x) < least else float(f"{x:.9g}") for x, least in zip(linear.preload, limits)]
-    return {"kind": "stiffness_matrix", "stiffness": rows, "preload": preload}

@@ -10,7 +10,6 @@ import pytest
 
 from jaxhydro.errors import InputError
 from jaxhydro.interop.conversion import Conversion, Treatment
-from jaxhydro.interop.line_linearisation import NoCatenary, catenary_pull
 from jaxhydro.interop.openfast_deck import read_openfast_deck
 from jaxhydro.platform.schema import Platform
 
@@ -233,33 +232,16 @@ def test_additional_terms_of_another_point_are_moved(edited: Edited) -> None:
     assert deck.platform["mooring"]["preload"][2] == 2.0e5
 
 
-def test_the_mooring_is_linearised(edited: Edited) -> None:
-    """Against the energy-consistent sum of both: symmetric but for the pull's own part, and a pull that is level."""
-    both, added = edited(), edited("main.fst", "3   CompMooring", "0   CompMooring")
-    lines = np.array(both.platform["mooring"]["stiffness"]) - np.array(added.platform["mooring"]["stiffness"])
-    pull = np.array(both.platform["mooring"]["preload"]) - np.array(added.platform["mooring"]["preload"])
-    across, down = catenary_pull(201.0, 75.0, 225.0, (60.0 - 1000 * math.pi / 4 * 0.1**2) * 9.81, 1e8, True)
-    assert pull == pytest.approx([0.0, 0.0, -2 * down, 0.0, 0.0, 0.0], abs=1e-3)
-    assert lines[1, 1] == pytest.approx(2 * across / 201.0, rel=1e-4)  # sideways: tension over length
-    assert lines[0, 0] > 2 * lines[1, 1] and lines[0, 4] == pytest.approx(lines[4, 0], rel=1e-5)
-
-
-def test_catenary_against_its_shape() -> None:
-    """An inextensible line whose ends are on z = a (cosh(x / a) - 1): H = w a, V = w a sinh(x / a)."""
-    a, x, weight = 120.0, 100.0, 500.0
-    length, rise = a * math.sinh(x / a), a * (math.cosh(x / a) - 1)
-    across, down = catenary_pull(x, rise, length, weight, 1e14, False)
-    assert across == pytest.approx(weight * a, rel=1e-5) and down == pytest.approx(weight * length, rel=1e-5)
-    # 60 m more of it lying on the bed change nothing
-    again = catenary_pull(x + 60.0, rise, length + 60.0, weight, 1e14, True)
-    assert again == pytest.approx((across, down), rel=1e-5)
-
-
-def test_a_taut_line_is_a_spring() -> None:
-    across, down = catenary_pull(300.0, 400.0, 490.0, 1e-3, 1e6, False)
-    assert math.hypot(across, down) == pytest.approx(1e6 * 10.0 / 490.0, rel=1e-4)
-    with pytest.raises(NoCatenary):
-        catenary_pull(0.0, 50.0, 500.0, 100.0, 1e8, True)
+def test_lines_are_catenaries_beside_hydrodyns_stiffness(edited: Edited) -> None:
+    deck = edited()
+    mooring = deck.platform["mooring"]
+    weight = (60.0 - 1000 * math.pi / 4 * 0.1**2) * 9.81
+    assert mooring["kind"] == "catenary"
+    assert mooring["line_types"] == {"chain": {"axial_stiffness": 1e8, "submerged_weight": pytest.approx(weight)}}
+    assert [line["anchor"] for line in mooring["lines"]] == [[-220.0, 0.0, -80.0], [220.0, 0.0, -80.0]]
+    assert mooring["lines"][1]["fairlead"] == [19.0, 0.0, -5.0]
+    assert deck.platform["stiffness"] == {"C11": 3e4, "C22": 3e4, "C66": 6e6}
+    assert "constant force" in said(deck, "AddF0", Treatment.LEFT_OUT)
 
 
 def test_lines_that_meet_are_left_out(edited: Edited) -> None:

@@ -4,23 +4,28 @@ import copy
 import math
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
 import jaxhydro as jh
 from jaxhydro.errors import InputError
-from jaxhydro.interop.catenary_line import CatenaryError, end_tension
 from jaxhydro.interop.conversion import Conversion, Treatment
 from jaxhydro.interop.frustum import hollow_frustum, solid_frustum
-from jaxhydro.interop.mooring_linearisation import linearised, pull
+from jaxhydro.interop.mooring_system import Attachment, MooringSystem, catenary_section
 from jaxhydro.interop.raft_design import read_raft_design
 from jaxhydro.interop.raft_masses import member_axes, moments_of
 from jaxhydro.interop.raft_member import RaftMember
-from jaxhydro.interop.raft_mooring import MooringSection, MooringSystem, PointKind
+from jaxhydro.interop.raft_mooring import MooringSection
 from jaxhydro.platform.body import RigidBody
+from jaxhydro.platform.catenary_build import catenary_lines
+from jaxhydro.platform.catenary_schema import Catenary
+from jaxhydro.rotations import cross, rotation
 
 DESIGN = Path(__file__).parents[1] / "fixtures" / "raft_design.yaml"
 
@@ -235,48 +240,6 @@ def test_treatment_of_what_the_platform_file_does_not_have(tmp_path: Path) -> No
 # ------------------------------------------------------------------------------------------------ moorings
 
 
-@pytest.mark.parametrize(
-    ("horizontal", "vertical", "length", "axial_stiffness", "weight", "on_bed", "tension"),
-    [  # MoorPy 1.3.0: moorpy.Catenary.catenary(horizontal, vertical, length, axial_stiffness, weight, CB, Tol=1e-12,
-        # MaxIter=200), CB = 0 on the bed, CB = -1000 off it; the third and fourth of what it returns, with the other sign
-        (796.73, 136.0, 835.35, 753.6e6, 1065.7, True, (348131.12790405407, 349055.0254522074)),
-        (700.0, 250.0, 760.0, 384.243e6, 698.094, False, (605414.8239767306, 493048.65519284684)),
-        (150.0, 200.0, 245.0, 5.0e7, 120.0, False, (612591.482035556, 831543.9507351845)),
-    ],
-    ids=["on the bed", "off the bed", "taut"],
-)
-def test_catenary_against_moorpy(
-    horizontal: float,
-    vertical: float,
-    length: float,
-    axial_stiffness: float,
-    weight: float,
-    on_bed: bool,
-    tension: tuple[float, ...],
-) -> None:
-    found = end_tension(horizontal, vertical, length, weight, axial_stiffness, on_bed)
-    np.testing.assert_allclose(found, tension, rtol=2e-7)
-
-
-def test_a_vertical_line_is_the_limit_of_a_catenary() -> None:
-    near = end_tension(1e-3, 100.0, 99.5, 50.0, 1e8, on_bed=False)
-    exact = end_tension(0.0, 100.0, 99.5, 50.0, 1e8, on_bed=False)
-    assert exact[0] == 0.0 and near[1] == pytest.approx(exact[1], rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("at", "word"),
-    [
-        ((50.0, 40.0, 95.0, 10.0, 1e8, True), "slack"),
-        ((0.0, 40.0, 50.0, 10.0, 1e8, False), "slack"),
-        ((50.0, 40.0, 60.0, 0.0, 1e8, False), "weight"),
-    ],
-)
-def test_lines_without_a_catenary(at: tuple[Any, ...], word: str) -> None:
-    with pytest.raises(CatenaryError, match=word):
-        end_tension(*at)
-
-
 def moorings(change: Callable[[dict[str, Any]], object] = lambda section: None) -> MooringSystem:
     section = contents()["mooring"]
     change(section)
@@ -286,10 +249,12 @@ def moorings(change: Callable[[dict[str, Any]], object] = lambda section: None) 
 def test_mooring_section_is_read() -> None:
     found = moorings(lambda s: s["points"][3].update(type="Coupled1") or s["points"][0].update(type="Anchor"))
     assert found.depth == 80.0 and len(found.points) == 6 and len(found.lines) == 3
-    assert found.points["fairlead1"].kind is PointKind.FAIRLEAD and found.points["anchor1"].kind is PointKind.FIXED
+    assert (
+        found.points["fairlead1"].attachment is Attachment.PLATFORM and found.points["anchor1"].attachment is Attachment.GROUND
+    )
     chain = found.line_types["chain"]
     assert chain.weight_in_water(1025.0, 9.81) == pytest.approx((120.0 - 1025.0 * math.pi / 4 * 0.01) * 9.81)
-    assert found.lines[1].ends == ("anchor2", "fairlead2")
+    assert found.lines["line2"].ends == ("anchor2", "fairlead2")
 
 
 OC3_POINTS = [(853.87, 0.0), (-426.935, 739.47311), (-426.935, -739.47311)], [(5.2, 0.0), (-2.6, 4.5033), (-2.6, -4.5033)]
@@ -303,59 +268,36 @@ def test_linear_mooring_of_oc3_against_moorpy() -> None:
         section["points"] += [{"name": f"f{i}", "type": "vessel", "location": [*fairlead, -70.0]}]
         section["lines"] += [{"endA": f"a{i}", "endB": f"f{i}", "type": "main", "length": 902.2}]
     section["line_types"] = [{"name": "main", "diameter": 0.09, "mass_density": 77.7066, "stiffness": 384.243e6}]
-    found = linearised(MooringSection.model_validate(section).system(200.0), 1025.0, 9.81)
+    system = MooringSection.model_validate(section).system(200.0)
+    water = SimpleNamespace(density=1025.0, depth=320.0, gravity=9.81)
+    load = catenary_lines(Catenary.model_validate(catenary_section(system, 320.0, 1025.0, 9.81)), water)
+
+    def pull(motion):
+        tension, direction = load.tension(motion, rotation(motion[3:]))
+        body = tension * direction
+        turned = rotation(motion[3:])
+        force, moment = turned @ body.sum(axis=1), turned @ cross(load.fairlead, body).sum(axis=1)
+        return jnp.concatenate([force, moment])
+
+    stiffness, preload = -np.asarray(jax.jacfwd(pull)(jnp.zeros(6))), np.asarray(pull(jnp.zeros(6)))
     expected = {(0, 0): 4.119314e4, (1, 1): 4.119318e4, (2, 2): 1.194528e4, (3, 3): 3.108803e8, (5, 5): 1.157033e7}
     expected |= {(0, 4): -2.816249e6, (4, 0): -2.816249e6, (1, 3): 2.816252e6}
     for at, value in expected.items():
         # MoorPy's own stiffness is symmetric; the moment's change as its arm turns with a preload is not, by at most 2e-3
-        assert found.stiffness[at] == pytest.approx(value, rel=3e-3 if at[1] > 2 else 1e-4), at
-    assert found.preload[2] == pytest.approx(-1.607716e6, rel=1e-5)
-
-
-def test_stiffness_is_the_slope_of_the_pull() -> None:
-    """The linear pull against the catenaries' own in a surge and yaw of its own, and no moment where there is symmetry."""
-    system, motion = moorings(), np.array([0.2, 0.0, 0.0, 0.0, 0.0, 0.005])
-    found = linearised(system, 1025.0, 9.81)
-    exact = pull(system, motion, 1025.0, 9.81)
-    np.testing.assert_allclose((found.preload - found.stiffness @ motion)[[0, 5]], exact[[0, 5]], rtol=0.02)
-    np.testing.assert_allclose(found.preload[[0, 1, 3, 4, 5]], 0.0, atol=1e-6 * abs(found.preload[2]))
-    assert found.tensions == pytest.approx([found.tensions[0]] * 3, rel=1e-9)
-
-
-def test_a_buoyant_line_is_a_heavy_one_upside_down() -> None:
-    def lines(sign: float) -> MooringSystem:
-        ends = [
-            {"name": "a", "type": "fixed", "location": [100, 0, -60 * sign - 70]},
-            {"name": "f", "type": "vessel", "location": [0, 0, -70]},
-        ]
-        kind = {
-            "name": "k",
-            "diameter": 0.0 if sign > 0 else math.sqrt(20 * 4 / (1000 * math.pi)),
-            "mass_density": 10.0,
-            "stiffness": 1e8,
-        }
-        line = {"endA": "a", "endB": "f", "type": "k", "length": 118.0}
-        return MooringSection.model_validate({"points": ends, "lines": [line], "line_types": [kind]}).system(500.0)
-
-    heavy, light = (pull(lines(sign), np.zeros(6), 1000.0, 9.81) for sign in (1.0, -1.0))
-    np.testing.assert_allclose(light[:3], heavy[:3] * [1, 1, -1], rtol=1e-6)
+        assert stiffness[at] == pytest.approx(value, rel=3e-3 if at[1] > 2 else 1e-4), at
+    assert preload[2] == pytest.approx(-1.607716e6, rel=1e-5)
 
 
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (lambda s: s["points"][3].update(type="free"), "line line1, which does not run from a fixed point to a fairlead"),
-        (lambda s: s["lines"][1].update(length=460.0), "line line2, a slack line"),
-        (lambda s: s["points"][2].update(location=[-200, -346, -40]), "line line3"),
+        (lambda s: s["points"][3].update(type="free"), "the line from point anchor1 ends at point fairlead1"),
+        (lambda s: s.update(water_depth=90.0), "its sea bed is 90 m deep"),
+        (lambda s: s["line_types"][0].update(diameter=0.5), "lines of type chain float"),
     ],
 )
 def test_moorings_that_are_left_out_say_why(tmp_path: Path, change: Callable[[dict[str, Any]], object], reason: str) -> None:
-    def longer(section: dict[str, Any]) -> None:
-        change(section)
-        if "line3" in reason:
-            section["lines"][2]["length"] = 420.0  # it hangs down to the bed
-
-    found = converted(tmp_path, lambda d: longer(d["mooring"]))
+    found = converted(tmp_path, lambda d: change(d["mooring"]))
     item = next(item for item in found.items if item.source.endswith(": mooring"))
     assert item.treatment is Treatment.LEFT_OUT and reason in item.meaning
     assert "mooring" not in found.platform
@@ -381,8 +323,7 @@ def test_the_platform_file_loads_builds_and_floats_as_the_design_says(tmp_path: 
     assert float(model.environment.gravity) == 9.81
     mass = sum(part["mass"] for part in found.platform["rigid_body"]["parts"])
     assert float(model.body.mass) == pytest.approx(mass)
-    stiffness = np.array(found.platform["mooring"]["stiffness"])
-    assert model.values["mooring.C11"] == pytest.approx(stiffness[0, 0])
+    assert model.values["mooring.line2.unstretched_length"] == 385.0
     assert all(item.source.startswith("design.yaml: ") for item in found.items)
 
 

@@ -91,9 +91,9 @@ def read_added_terms(file: KeyedFile, potential_flow: bool) -> AddedTerms:
     if preload.any() and moved:
         say("AddF0", Treatment.APPROXIMATED, "Moved to the origin; what the preload adds to the stiffness there is left out.")
     elif preload.any():
-        say("AddF0", Treatment.TAKEN, "In `mooring.preload`.")
+        say("AddF0", Treatment.TAKEN, "`mooring.preload`.")
     if stiffness.any():
-        say("AddCLin", Treatment.TAKEN, f"In `mooring.stiffness`, about the origin.{where}")
+        say("AddCLin", Treatment.TAKEN, f"`mooring.stiffness`, or `stiffness` beside lines, about the origin.{where}")
     if linear.any():
         say("AddBLin", Treatment.TAKEN, f"`linear_damping`, in body axes as in HydroDyn.{where}")
     if quadratic.any() and moved:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from jaxhydro.errors import shown
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
-from jaxhydro.interop.moordyn_system import Attachment, LineType, MooringLine, MooringPoint, MooringSystem
+from jaxhydro.interop.mooring_system import Attachment, LineType, MooringLine, MooringPoint, MooringSystem
 from jaxhydro.interop.openfast.keyed_file import KeyedFile
 from jaxhydro.interop.openfast.table_row import TableRow, to_number
 
@@ -24,12 +24,6 @@ NAMES = {  # of a column -> how its header may call it
     "Diam": ("Diam", "Diameter", "D"),
     "Mass": ("MassDen", "MassDenInAir", "Mass/m", "MassPerLength", "m"),
     "EA": ("EA",),
-    "BA": ("BA/-zeta", "BA", "BA/-zeta/N"),
-    "EI": ("EI",),
-    "Cd": ("Cd", "Cdn"),
-    "CdAx": ("CdAx", "Cdt"),
-    "Ca": ("Ca", "Can"),
-    "CaAx": ("CaAx", "Cat"),
     "ID": ("ID", "Node", "Point", "Line", "Num", "Connection"),
     "Type": ("Type", "Attachment", "Connection"),
     "X": ("X",),
@@ -38,7 +32,6 @@ NAMES = {  # of a column -> how its header may call it
     "M": ("M", "Mass"),
     "V": ("V", "Volume"),
     "Length": ("UnstrLen", "Length", "UnstrchLen"),
-    "Segments": ("NumSegs", "Segs", "N"),
     "A": ("AttachA", "NodeAnch", "EndA", "End-A"),
     "B": ("AttachB", "NodeFair", "EndB", "End-B"),
 }
@@ -51,12 +44,13 @@ SECTIONS = {  # words of a section's title -> the section
 }
 
 
-def read_mooring_system(file: KeyedFile, level: float) -> tuple[MooringSystem, list[ConvertedItem]]:
+def read_mooring_system(file: KeyedFile, level: float, depth: float) -> tuple[MooringSystem, list[ConvertedItem]]:
     """Points, line types and lines of MoorDyn's file, and what was left out of it.
 
     Args:
         file: The file.
         level: Still water above mean sea level, m.
+        depth: Of the water below still water, m.
 
     Raises:
         InputError: A section is missing or broken, or a line names a point or type that is not there.
@@ -78,13 +72,13 @@ def read_mooring_system(file: KeyedFile, level: float) -> tuple[MooringSystem, l
         if (length := row.number("Length")) <= 0.0:
             raise row.wrong("an unstretched length > 0", f"{length:g}")
         name = row.cells["ID"]
-        lines[name] = MooringLine(name, kind, ends, length, row.whole("Segments", 0))
+        lines[name] = MooringLine(name, ends, length, kind)
     items = [
         ConvertedItem(f"{file.name}: {SECTIONS[name][0]}", Treatment.LEFT_OUT, f"MoorDyn's {name} have no counterpart.")
         for name in ("bodies", "rods")
         if sections[name]
     ]
-    return MooringSystem(points, types, lines), items
+    return MooringSystem(depth, points, types, lines), items
 
 
 def _section(file: KeyedFile, titles: Sequence[str]) -> list[TableRow]:
@@ -119,10 +113,7 @@ def _line_type(row: TableRow) -> LineType:
     for key, value in values.items():
         if value <= 0.0 and key != "Diam":
             raise row.wrong(f"a number > 0 for {key}", f"{value:g}")
-    drag = (row.number("Cd", 0.0), row.number("CdAx", 0.0))
-    added = (row.number("Ca", 0.0), row.number("CaAx", 0.0))
-    damping, bending = row.number("BA", 0.0), row.number("EI", 0.0)
-    return LineType(row.cells["Name"], values["Diam"], values["Mass"], values["EA"], damping, bending, drag, added)
+    return LineType(row.cells["Name"], values["Diam"], values["Mass"], values["EA"])
 
 
 def _point(row: TableRow, level: float) -> MooringPoint:
