@@ -412,6 +412,6 @@ def _model(
 
     declared = load_platform(platform)
     if heading is not None and (other := declared.of_other_waves(heading)) is not None:
-        raise options.wrong("--heading", f"{other.words}, the {other.key} of the platform file, expected; found {heading:g}")
+        raise options.wrong("--heading", f"{other.words} ({other.key} of the platform file) expected; found {heading:g}")
     model = model_of(declared, diffraction, elements)
     return model if calibration is None else calibrated(model, platform, declared.name, calibration)

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-ON_SEABED = 1e-4  # of the water depth: how far from the seabed an anchor is on it
-
 
 class Attachment(StrEnum):
     """What a point is fixed to."""
@@ -109,10 +107,8 @@ def catenary_section(system: MooringSystem, depth: float, density: float, gravit
         The section.
 
     Raises:
-        NoCatenaries: Lines float, branch, carry a mass, end elsewhere, or stand on another sea bed.
+        NoCatenaries: Lines float, branch, carry a mass or end elsewhere.
     """
-    if abs(system.depth - depth) > ON_SEABED * depth:
-        raise NoCatenaries(f"its sea bed is {system.depth:g} m deep, and the water {depth:g} m")
     left = dict(system.lines)
     rows: list[dict[str, Any]] = []
     used: dict[str, None] = {}  # types in the order of the lines
@@ -129,7 +125,8 @@ def catenary_section(system: MooringSystem, depth: float, density: float, gravit
         if (weight := kind.weight_in_water(density, gravity)) <= 0.0:
             raise NoCatenaries(f"lines of type {name} float: {weight:.4g} N/m in water")
         types[name] = {"axial_stiffness": kind.axial_stiffness, "submerged_weight": float(f"{weight:.9g}")}
-    return {"kind": "catenary", "line_types": types, "lines": rows}
+    section = {"kind": "catenary", "line_types": types, "lines": rows}
+    return section if system.depth == depth else {**section, "seabed": {"depth": system.depth}}
 
 
 def _path(

@@ -87,8 +87,7 @@ def _hydrodyn(
     flow = PotentialFlow()
     if mode == POTENTIAL_FLOW:
         wet = any(not member.potential and member.joints[0].place[2] < 0.0 for member in members)
-        heading = 0.0 if deck.waves is None else deck.waves.number("WaveDir", 0.0)
-        flow = read_potential_flow(file, water.density, heading, wet)
+        flow = read_potential_flow(file, water.density, wet)
         items += flow.items
     elif mode:
         items.append(ConvertedItem(f"{file.name}: PotMod", Treatment.LEFT_OUT, f"Potential flow of PotMod {mode} is not read."))

@@ -42,7 +42,7 @@ def covers(known: Float[np.ndarray, " d"], heading: float) -> bool:
 def spoken(known: Float[np.ndarray, " d"]) -> str:
     """Headings (deg) in words: all of a few, or the first and the last."""
     if len(known) <= 4:
-        return ", ".join(f"{one:g}" for one in known)
+        return ", ".join(f"{round(float(one), 6) + 0.0:g}" for one in known)
     table = HeadingInterpolation.of(np.radians(known), np.zeros(len(known), complex))
     first, last = (math.degrees(float(table.heading[i])) for i in (0, -1))
     return f"{first:.6g} to {last:.6g}"

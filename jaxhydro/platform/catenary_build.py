@@ -78,7 +78,7 @@ def catenary_remarks(mooring: Catenary, water: WaterProperties, source: str) -> 
     Raises:
         InputError: A line has no balance in the reference position, or one whose anchor is above the seabed sags into it.
     """
-    load = catenary_lines(mooring, water)
+    load, depth = catenary_lines(mooring, water), mooring.seabed_depth(water.depth)
     horizontal, drop = (np.asarray(one) for one in _at_rest(load))
     fairlead = np.asarray(load.fairlead)[2]
     places = [(i, copy) for i, line in enumerate(mooring.lines) for copy in range(len(line.heading))]
@@ -88,13 +88,11 @@ def catenary_remarks(mooring: Catenary, water: WaterProperties, source: str) -> 
             problems[i] = Problem(
                 f"mooring.lines[{i}]", "a line that can be in balance", "no balance at the reference position"
             )
-        elif not on_bed and low < -water.depth:
+        elif not on_bed and low < -depth:
             hint = (
                 "Let the anchor be on the sea bed, or shorten the line: a line between two points above it must not touch it."
             )
-            problems[i] = Problem(
-                f"mooring.lines[{i}].anchor", f"an anchor at z = {-water.depth:g} m", f"a sag to {low:.4g} m", hint
-            )
+            problems[i] = Problem(f"mooring.lines[{i}].anchor", f"an anchor at z = {-depth:g} m", f"a sag to {low:.4g} m", hint)
     if problems:
         raise InputError(source, list(problems.values()))
     slack = [i + 1 for i, (on_bed, pull) in enumerate(zip(load.grounded, horizontal)) if on_bed and pull == 0.0]

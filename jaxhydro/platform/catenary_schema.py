@@ -79,9 +79,10 @@ class CatenaryLine(Schema):
 
 
 class Seabed(Schema):
-    """Friction coefficient (-) between lines and the seabed."""
+    """Friction coefficient (-) between lines and the seabed, and its depth (m) where that is not the water's."""
 
     friction: NonNegative = 0.0
+    depth: Positive | None = None
 
 
 class Catenary(Consistent):
@@ -109,12 +110,17 @@ class Catenary(Consistent):
             if name not in used and not suggest(name, used - set(self.line_types)):
                 yield Problem(f"line_types.{name}", f"a type that a line has ({', '.join(sorted(used))})", shown(name))
 
-    def on_seabed(self, line: CatenaryLine, depth: float) -> bool:
-        """Whether a line's anchor is on the seabed of a depth (m), so that the line may rest there."""
-        return line.anchor[2] <= -depth * (1 - ON_SEABED)
+    def seabed_depth(self, water_depth: float) -> float:
+        """Depth (m) of the seabed under the lines, in water of a depth (m)."""
+        return water_depth if self.seabed.depth is None else self.seabed.depth
 
-    def water_faults(self, density: float, depth: float, gravity: float) -> Iterator[Problem]:
+    def on_seabed(self, line: CatenaryLine, water_depth: float) -> bool:
+        """Whether a line's anchor is on the seabed, so that the line may rest there; of a water depth (m)."""
+        return line.anchor[2] <= -self.seabed_depth(water_depth) * (1 - ON_SEABED)
+
+    def water_faults(self, density: float, water_depth: float, gravity: float) -> Iterator[Problem]:
         """What does not fit the water: points under the seabed, and types that float."""
+        depth = self.seabed_depth(water_depth)
         for i, line in enumerate(self.lines):
             for end in ("anchor", "fairlead"):
                 if (z := getattr(line, end)[2]) < -depth * (1 + ON_SEABED):

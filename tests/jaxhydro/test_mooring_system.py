@@ -47,6 +47,11 @@ def test_parts_between_free_points_are_segments_from_the_anchor() -> None:
     assert found["line_types"]["rope"]["submerged_weight"] == pytest.approx(50.0 * GRAVITY)
 
 
+def test_a_seabed_that_is_not_the_waters_is_stated() -> None:
+    assert "seabed" not in section(system())
+    assert section(system(depth=210.0))["seabed"] == {"depth": 210.0}
+
+
 def test_it_is_a_mooring_of_the_platform_file() -> None:
     """OC3's line: tension and pull as MoorPy 1.3.0 has them (tests/data/catenary-moorpy.json has more)."""
     points = [
@@ -54,8 +59,8 @@ def test_it_is_a_mooring_of_the_platform_file() -> None:
         MooringPoint("f", Attachment.PLATFORM, (5.2, 0.0, -70.0)),
     ]
     oc3 = system(points, [LineType("main", 0.09, 77.7066, 384.243e6)], [MooringLine("1", ("a", "f"), 902.2, "main")], 320.0)
-    made = Catenary.model_validate(catenary_section(oc3, 320.0, DENSITY, GRAVITY))
-    load = catenary_lines(made, SimpleNamespace(density=DENSITY, depth=320.0, gravity=GRAVITY))
+    made = Catenary.model_validate(catenary_section(oc3, DEPTH, DENSITY, GRAVITY))
+    load = catenary_lines(made, SimpleNamespace(density=DENSITY, depth=DEPTH, gravity=GRAVITY))
     tension, direction = load.tension(np.zeros(6), np.eye(3))
     assert float(tension[0]) == pytest.approx(911.4e3, rel=1e-4)
     assert float(3 * tension[0] * direction[2, 0]) == pytest.approx(-1.607716e6, rel=1e-5)
@@ -64,7 +69,6 @@ def test_it_is_a_mooring_of_the_platform_file() -> None:
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"depth": 210.0}, "its sea bed is 210 m deep, and the water 200 m"),
         ({"points": [*POINTS[:1], replace(POINTS[1], mass=1e4), *POINTS[2:]]}, "point link between two lines has a mass"),
         ({"types": [TYPES[0], replace(TYPES[1], diameter=0.3)]}, "lines of type rope float"),
         ({"lines": LINES[:1]}, "line from point anchor ends at point link"),

@@ -292,7 +292,6 @@ def test_linear_mooring_of_oc3_against_moorpy() -> None:
     ("change", "reason"),
     [
         (lambda s: s["points"][3].update(type="free"), "the line from point anchor1 ends at point fairlead1"),
-        (lambda s: s.update(water_depth=90.0), "its sea bed is 90 m deep"),
         (lambda s: s["line_types"][0].update(diameter=0.5), "lines of type chain float"),
     ],
 )

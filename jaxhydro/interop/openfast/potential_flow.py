@@ -37,13 +37,12 @@ class PotentialFlow:
     items: list[ConvertedItem] = field(default_factory=list)
 
 
-def read_potential_flow(file: KeyedFile, density: float, heading: float, strips: bool) -> PotentialFlow:
+def read_potential_flow(file: KeyedFile, density: float, strips: bool) -> PotentialFlow:
     """Keys of the platform file for HydroDyn's potential flow (PotMod = 1).
 
     Args:
         file: HydroDyn's file.
         density: Of the water, kg/m3.
-        heading: Of the waves, WaveDir, deg.
         strips: Whether wet members are outside potential flow (PropPot FALSE).
 
     Raises:
@@ -97,23 +96,21 @@ def read_potential_flow(file: KeyedFile, density: float, heading: float, strips:
         text = f"{radiation.name} has no row with PER = 0: the added mass of infinite frequency is missing. Give `added_mass`."
         say(".1, PER = 0", Treatment.LEFT_OUT, text)
     if modes["ExctnMod"]:
-        flow.keys["excitation"] = entry(table(".3", "ExctnMod"), heading=heading)
-        say("ExctnMod, .3", Treatment.TAKEN, f"`excitation` by {root.name}.3, for waves of {heading:g} deg.")
+        flow.keys["excitation"] = entry(table(".3", "ExctnMod"))
+        say("ExctnMod, .3", Treatment.TAKEN, f"`excitation` by {root.name}.3, for all its headings.")
         if file.whole("ExctnDisp", 0) == 2:
             say("ExctnDisp", Treatment.APPROXIMATED, "Waves are met where the platform is, without a filter of its motion.")
         if strips:
             text = "`excitation` stands for the waves' forces on all members: those with PropPot FALSE have drag alone."
             say("PropPot", Treatment.APPROXIMATED, text)
-    _second_order(modes, root, table, entry, heading, flow, say)
+    _second_order(modes, root, table, entry, flow, say)
     return flow
 
 
-def _second_order(
-    modes: dict[str, int], root: Path, table: Any, entry: Any, heading: float, flow: PotentialFlow, say: Any
-) -> None:
+def _second_order(modes: dict[str, int], root: Path, table: Any, entry: Any, flow: PotentialFlow, say: Any) -> None:
     for key, approximation in (("DiffQTF", "full"), ("NewmanApp", "newman")):
         if modes[key] == QTF and "drift" not in flow.keys:
-            flow.keys["drift"] = entry(table(".12d", key), heading=heading, approximation=approximation)
+            flow.keys["drift"] = entry(table(".12d", key), approximation=approximation)
             newman = approximation == "newman"
             more = " HydroDyn has Standing's variant; here it is the mean of T_kk and T_ll." if newman else ""
             treatment = Treatment.APPROXIMATED if newman else Treatment.TAKEN
