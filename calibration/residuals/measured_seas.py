@@ -27,7 +27,7 @@ from jaxhydro.choices import check
 from jaxhydro.dynamics.conventions import allowed_values
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.observe import observe
-from jaxhydro.dynamics.requested_sea import share_within
+from jaxhydro.dynamics.sea_of_request import share_within
 from jaxhydro.dynamics.simulate import largest_step
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.environment import DOFS, Environment

@@ -12,7 +12,8 @@ from jaxhydro.cli.sea_options import transient_of, with_band
 from jaxhydro.cli.simulate_command import Job, finite, print_remarks, print_rest, told_of_bed
 from jaxhydro.cli.simulation_files import Motion, SeaState, write_motion
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, RequestedSea, build_sea, impossible, outside
+from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, RequestedSea
+from jaxhydro.dynamics.sea_of_request import build_sea, impossible, outside
 from jaxhydro.dynamics.simulate import free_decay, largest_step
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark

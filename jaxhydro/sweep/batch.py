@@ -14,7 +14,8 @@ from jaxtyping import Array, Complex, Float
 
 from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import RequestedSea, build_sea
+from jaxhydro.dynamics.requested_sea import RequestedSea
+from jaxhydro.dynamics.sea_of_request import build_sea
 from jaxhydro.dynamics.simulate import largest_step, simulate
 from jaxhydro.dynamics.statics import EquilibriumError
 from jaxhydro.environment import DOFS

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import NOTED_SHARE, usual_cutoff
+from jaxhydro.dynamics.sea_of_request import NOTED_SHARE, usual_cutoff
 from jaxhydro.dynamics.table_ranges import TableRange, table_ranges
 from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.remarks import Remark

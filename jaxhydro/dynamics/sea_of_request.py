@@ -1,0 +1,226 @@
+"""Irregular sea of a request."""
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+
+from jaxhydro.analysis.sea_statistics import record_peak_period
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.requested_sea import Record, RequestedSea
+from jaxhydro.dynamics.simulate import MAX_PAIRS, too_many_pairs
+from jaxhydro.dynamics.table_ranges import heading_fault, outside_tables
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.remarks import Remark
+from jaxhydro.waves.components import Components
+from jaxhydro.waves.directional_spectrum import (
+    directional_components,
+)
+from jaxhydro.waves.irregular import separated_record, spectrum_components
+from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz, white_noise
+from jaxhydro.waves.spreading import circular_moments
+
+MAX_RECORD_MISMATCH = 0.01  # of a record in the band, that first and second order may miss by root mean square
+NOTED_SHARE = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
+MIN_SHARE = 0.05  # share, below which it is a mistake
+
+
+def share_within(elevation: np.ndarray, step: float, low: float, high: float) -> float:
+    """Fraction of a record's variance between two frequencies.
+
+    Args:
+        elevation: Elevation (m), (t,).
+        step: Sampling interval (s).
+        low: Lower frequency (Hz).
+        high: Upper frequency (Hz).
+    """
+    power = np.abs(np.fft.rfft(elevation - elevation.mean())) ** 2
+    frequency = np.fft.rfftfreq(len(elevation), step)
+    return float(power[(frequency >= low) & (frequency <= high)].sum() / max(power.sum(), 1e-300))
+
+
+class BuiltSea(NamedTuple):
+    """Irregular sea built from a request.
+
+    Attributes:
+        sea: The sea.
+        about: What is written about it.
+        target: Spectrum asked for, from Hz to m²/Hz; None for a record.
+        notes: Notes on the sea.
+    """
+
+    sea: IrregularSea
+    about: dict[str, Any]
+    target: Callable[[np.ndarray], np.ndarray] | None
+    notes: list[str]
+
+
+def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
+    """Build the sea that is requested.
+
+    Args:
+        model: The platform.
+        asked: The request.
+        duration: Duration of the simulation (s).
+
+    Raises:
+        InputError: The sea is impossible; the option or the record is named.
+    """
+    notes: list[str] = []
+    low, cutoff = asked.band(float(model.pace))
+    if asked.record is not None:
+        waves, about = _from_record(model, asked, asked.record, notes)
+        target = None
+    else:
+        waves, about, target = _from_spectrum(model, asked, duration, notes)
+    energy = float(0.5 * (waves.amplitude**2).sum())
+    about |= {
+        "lowest_frequency": low,
+        "cutoff": cutoff,
+        "components": int(waves.omega.size),
+        "repeat_period": round(float(waves.period), 6),
+        "significant_wave_height_of_components": 4 * math.sqrt(energy),
+        "heading": asked.heading,
+        "order": asked.order,
+        "stretching": asked.stretching,
+        "diffraction": "none" if model.cylinders is None else model.conventions.diffraction,
+    }
+    usual = usual_cutoff(4 * math.sqrt(energy), float(model.environment.gravity))
+    if asked.order == 2 and cutoff > usual:
+        notes.append(
+            f"in a sea this high second order is usually cut off at sqrt(2 g / Hs), --cutoff {usual:.2g} (Stansberg): "
+            "beyond, short waves bind more than they have"
+        )
+    if model.cylinders is None and model.conventions.diffraction != "none":
+        notes.append("no member of this platform diffracts waves: 1 + Ca everywhere")
+    if not asked.long_crested:
+        _check_directional(model, asked, waves)
+    sea = IrregularSea(waves, model.environment, 1 if asked.order == 1 else 2, asked.stretching)  # type: ignore[arg-type]
+    if asked.record is not None:
+        record = asked.record
+        left = record.elevation - record.elevation.mean() - sea.gauge(record.times, record.position)
+        about["share_of_record"] = 1 - float(np.var(left) / np.var(record.elevation))
+        if about["share_of_record"] < NOTED_SHARE:
+            notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
+    return BuiltSea(sea, about, target, notes)
+
+
+def _check_directional(model: Model, asked: RequestedSea, waves: Components) -> None:
+    """Raise InputError for a sea of several headings that cannot be simulated."""
+    if asked.order == 2 and waves.omega.size**2 > MAX_PAIRS:
+        expected = "1 in a sea of several headings"
+        raise InputError("--order", [Problem("", expected, f"2 ({too_many_pairs(waves.omega.size)})")])
+    if (fault := heading_fault(model, np.asarray(waves.heading))) is not None:
+        raise InputError("platform", [Problem("", *fault)])
+
+
+def outside(model: Model, sea: IrregularSea, about: dict[str, Any]) -> list[Remark]:
+    """Remarks on energy outside the model's tables; `about` gets it too."""
+    found = outside_tables(model, sea.components)
+    about |= {f"share_outside_{one.key}": share for one, share in found.items()}
+    return [remark for one, share in found.items() if (remark := one.remark(share)) is not None]
+
+
+def usual_cutoff(height: float, gravity: float) -> float:
+    """Usual cutoff frequency (Hz) of second-order seas, sqrt(2 g / Hs) / 2 pi.
+
+    Args:
+        height: Significant wave height Hs (m).
+        gravity: Acceleration of gravity g (m/s²).
+
+    References:
+        C. T. Stansberg (1998), Non-Gaussian extremes in numerically generated second-order random waves on deep water,
+            ISOPE.
+    """
+    return math.sqrt(2 * gravity / height) / (2 * math.pi)
+
+
+def _from_spectrum(
+    model: Model, asked: RequestedSea, duration: float, notes: list[str]
+) -> tuple[Components, dict[str, Any], Callable[[np.ndarray], np.ndarray]]:
+    hs, tp, gamma = asked.hs or 0.0, asked.tp or 0.0, asked.gamma
+    if asked.spectrum == "jonswap" and gamma is None and not asked.measured:
+        gamma = float(peak_enhancement(hs, tp))
+    low, cutoff = asked.band(float(model.pace))
+    band = (2 * math.pi * low * (1 - 1e-9), 2 * math.pi * cutoff * (1 + 1e-9))
+
+    directional = asked.directional
+
+    def spectrum(omega):
+        if directional is not None:
+            return directional.density(omega)
+        if asked.spectrum == "white":
+            return white_noise(omega, hs, *band)
+        return jonswap(omega, hs, tp, gamma) if asked.spectrum == "jonswap" else pierson_moskowitz(omega, hs, tp)
+
+    try:
+        drawn: Any = {"low": low, "cutoff": cutoff, "seed": asked.seed, "amplitudes": asked.amplitudes}
+        if directional is None:
+            heading = math.radians(asked.heading)
+            waves = spectrum_components(spectrum, duration, model.environment, heading=heading, **drawn)
+        else:
+            waves = directional_components(directional, duration, model.environment, **drawn)
+    except ValueError as error:
+        if "break" in str(error):
+            option = "--hs" if directional is None else "--sea" if asked.measured is None else "--sea-file"
+            raise InputError(option, [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
+        raise impossible("--cutoff", error) from None
+    share = float(spectrum(waves.omega).sum() * 2 * math.pi / waves.period) / (hs**2 / 16)
+    if share < MIN_SHARE:
+        expected = f"a band, here {low:g} to {cutoff:g} Hz, with waves in it"
+        raise InputError("--cutoff", [Problem("", expected, f"one with {share:.1%} of the spectrum")])
+    if share < NOTED_SHARE:
+        notes.append(f"{share:.1%} of the spectrum lies from {low:g} to {cutoff:g} Hz: see --low and --cutoff")
+    about = {
+        "spectrum": asked.spectrum,
+        "significant_wave_height": hs,
+        "peak_period": asked.tp,
+        "peak_enhancement": gamma,
+        "seed": asked.seed,
+        "amplitudes": asked.amplitudes,
+    }
+    if not asked.long_crested:
+        moments = circular_moments(np.asarray(waves.heading), np.asarray(waves.amplitude) ** 2)
+        about |= {"mean_heading": math.degrees(moments.mean), "directional_width": math.degrees(moments.width)}
+    if asked.measured is not None:
+        about |= {"directional_spectrum": asked.measured.source, "x_bearing": asked.measured.x_bearing}
+    elif len(asked.systems) > 1 or not asked.long_crested:
+        about["systems"] = "; ".join(one.words for one in asked.systems)
+    return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))
+
+
+def _from_record(model: Model, asked: RequestedSea, record: Record, notes: list[str]) -> tuple[Components, dict[str, Any]]:
+    low, cutoff = asked.band(float(model.pace))
+    try:
+        found = separated_record(
+            record.times,
+            record.elevation,
+            model.environment,
+            position=record.position,
+            heading=math.radians(asked.heading),
+            low=low,
+            cutoff=cutoff,
+            order=asked.order,
+        )
+    except ValueError as error:
+        option = "--cutoff" if "cutoff" in str(error) or "band" in str(error) else f"{record.source}: column {record.column}"
+        raise impossible(option, error) from None
+    if found.mismatch > MAX_RECORD_MISMATCH:
+        missed = f"first and second order miss {found.mismatch:.1%} of the record in the band, and the nearest found is used"
+        notes.append(f"{missed}: a --cutoff below {cutoff:g}, or --order 1, follows it")
+    step = float(record.times[-1] - record.times[0]) / (len(record.times) - 1)
+    return found.waves, {
+        "record": record.source,
+        "record_column": record.column,
+        "wave_position": list(record.position),
+        "significant_wave_height": 4 * float(np.std(record.elevation)),
+        "peak_period": record_peak_period(record.elevation, step, low, cutoff),
+        "mismatch": found.mismatch,
+    }
+
+
+def impossible(option: str, error: ValueError) -> InputError:
+    return InputError(option, [Problem("", "a sea that can be simulated", f"none ({error})")])
