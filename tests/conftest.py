@@ -28,6 +28,7 @@ def pytest_configure(config):
         os.environ["XLA_FLAGS"] = f"{flags} --xla_cpu_parallel_codegen_split_count=1 {os.environ.get('XLA_FLAGS', '')}"
 
 
+gc.set_threshold(20_000, 20, 20)  # compiled programs are millions of objects; going through them often took 7 % of the time
 jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)  # tests compile thousands of small programs
 
 
