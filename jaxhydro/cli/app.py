@@ -217,6 +217,30 @@ def convert(
     convert_model(source, out)
 
 
+@app.command(epilog=arguments.EXPORTING)
+def export(
+    platform: Annotated[
+        str,
+        typer.Argument(
+            help="A platform file, or a built-in name (see `jaxhydro platforms`).", autocompletion=options.platforms_like
+        ),
+    ],
+    out: Annotated[Path, typer.Option("--out", help="A new or an empty folder.")],
+    calibration: arguments.Calibrated = None,
+    deck: Annotated[
+        arguments.DeckFormat, typer.Option("--format", help="Program that the deck is written for.")
+    ] = arguments.DeckFormat.openfast,
+) -> None:
+    """Write a platform, tuned by a calibration, as another program's model, with a page of what became of each item.
+
+    For OpenFAST 5: main.fst, and files of ElastoDyn, HydroDyn, SeaState (still water) and, for catenaries, MoorDyn.
+    """
+    options.check_platform(platform)
+    from jaxhydro.cli.export_command import export_model
+
+    export_model(platform, out, deck, calibration)
+
+
 @app.command()
 def check(
     campaign: arguments.Campaign,

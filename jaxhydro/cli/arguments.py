@@ -61,6 +61,16 @@ CONVERTING = "\n\n".join(
         "A folder that is not empty is refused. Exit status: 0 done; 2 the input is wrong, and nothing was written.",
     )
 )
+EXPORTING = "\n\n".join(
+    (
+        "[bold]Examples[/bold]",
+        "jaxhydro export my-campaign/platform.yaml --out deck --calibration my-campaign-calibration",
+        "jaxhydro export volturnus-s --out deck",
+        "[bold]What it writes[/bold]",
+        "main.fst and the files that it names, and export.md: what was taken, approximated and left out. "
+        "A folder that is not empty is refused. Exit status: 0 done; 2 the input is wrong, and nothing was written.",
+    )
+)
 STARTING = "\n\n".join(
     (
         "[bold]Examples[/bold]",
@@ -134,6 +144,12 @@ SWEEPING = "\n\n".join(
 
 
 MULTISTART = "multistart"
+
+
+class DeckFormat(StrEnum):
+    """Program that a deck is written for."""
+
+    openfast = "openfast"
 
 
 class Spectrum(StrEnum):

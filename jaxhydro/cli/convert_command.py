@@ -1,15 +1,16 @@
 """Command `convert`: a platform file from another program's model."""
 
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 from jaxhydro.cli.console import say
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.files import check_new_folder, staged
-from jaxhydro.interop.conversion import Conversion, Treatment
+from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
 from jaxhydro.interop.converters import convert_file
-from jaxhydro.interop.platform_text import conversion_page, platform_text
+from jaxhydro.interop.platform_text import conversion_page, counted, platform_text
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import load_platform
 
@@ -35,7 +36,7 @@ def convert_model(source: Path, folder: Path) -> None:
         (temporary / PLATFORM_FILE).write_text(platform_text(conversion, str(source)), encoding="utf-8")
         (temporary / PAGE).write_text(conversion_page(conversion, source.name), encoding="utf-8")
         for name, path in conversion.files.items():
-            _copy(path, temporary / name)
+            copy_whole(path, temporary / name)
         model = _built(temporary, source)
     _print(conversion, model, source, folder)
 
@@ -50,24 +51,28 @@ def _built(folder: Path, source: Path) -> Model:
         raise InputError(f"{source}, as {PLATFORM_FILE}", problems) from None
 
 
-def _copy(source: Path, target: Path) -> None:
+def copy_whole(source: Path, target: Path) -> None:
+    """Copy a file. Raises InputError where it cannot be read."""
     try:
         shutil.copyfile(source, target)
     except OSError as error:
         raise InputError(str(source), [Problem("", "a file that can be copied", error.strerror or str(error))]) from None
 
 
-def _print(conversion: Conversion, model: Model, source: Path, folder: Path) -> None:
-    counts = {kind: sum(item.treatment is kind for item in conversion.items) for kind in Treatment}
-    told = ", ".join(f"{number} {kind}" for kind, number in counts.items())
-    say(f"{folder} is made from {source}: {told}.", "bold")
-    close = [item for item in conversion.items if item.treatment is Treatment.APPROXIMATED]
+def print_losses(items: Sequence[ConvertedItem]) -> None:
+    """Print what was approximated, and the names of what was left out."""
+    close = [item for item in items if item.treatment is Treatment.APPROXIMATED]
     for item in close[:MAX_TOLD]:
         say(f"approximated: {item.source}: {item.meaning}")
     if len(close) > MAX_TOLD:
         say(f"and {len(close) - MAX_TOLD} more.")
-    if left := [item.source for item in conversion.items if item.treatment is Treatment.LEFT_OUT]:
+    if left := [item.source for item in items if item.treatment is Treatment.LEFT_OUT]:
         say(f"left out: {'; '.join(left)}.")
+
+
+def _print(conversion: Conversion, model: Model, source: Path, folder: Path) -> None:
+    say(f"{folder} is made from {source}: {counted(conversion.items)}.", "bold")
+    print_losses(conversion.items)
     for remark in model.remarks:
         if remark.warning:
             say(f"warning: {remark.text.replace(str(folder.parent), '')}")

@@ -1,6 +1,8 @@
 """Text of a platform file, and of the page that says what became of a source, from a conversion."""
 
+from collections.abc import Mapping, Sequence
 from io import StringIO
+from pathlib import Path
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -56,16 +58,30 @@ def conversion_page(conversion: Conversion, source: str) -> str:
         conversion: The conversion.
         source: Name of what was converted.
     """
-    counts = {kind: sum(item.treatment is kind for item in conversion.items) for kind in Treatment}
-    told = ", ".join(f"{number} {kind}" for kind, number in counts.items())
-    lines = [f"# {_plain(source)} as platform.yaml", "", f"{len(conversion.items)} items: {told}."]
+    return items_page(f"{source} as platform.yaml", conversion.items, conversion.files)
+
+
+def items_page(title: str, items: Sequence[ConvertedItem], files: Mapping[str, Path]) -> str:
+    """Page of tables of what was taken, approximated and left out, in Markdown.
+
+    Args:
+        title: Its title.
+        items: The items.
+        files: Copied files: name -> file that it is a copy of.
+    """
+    lines = [f"# {_plain(title)}", "", f"{len(items)} items: {counted(items)}."]
     for kind, heading in HEADINGS.items():
-        if items := [item for item in conversion.items if item.treatment is kind]:
-            lines += ["", f"## {heading}", "", "| source | meaning |", "|---|---|", *map(_row, items)]
-    if conversion.files:
+        if rows := [_row(item) for item in items if item.treatment is kind]:
+            lines += ["", f"## {heading}", "", "| source | meaning |", "|---|---|", *rows]
+    if files:
         lines += ["", "## Copied files", "", "| file | from |", "|---|---|"]
-        lines += [f"| {_plain(name)} | {_plain(str(path))} |" for name, path in conversion.files.items()]
+        lines += [f"| {_plain(name)} | {_plain(str(path))} |" for name, path in files.items()]
     return "\n".join(lines) + "\n"
+
+
+def counted(items: Sequence[ConvertedItem]) -> str:
+    """Number of items by what became of them, in words."""
+    return ", ".join(f"{sum(item.treatment is kind for item in items)} {kind}" for kind in Treatment)
 
 
 def _row(item: ConvertedItem) -> str:

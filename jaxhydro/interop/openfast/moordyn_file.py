@@ -78,7 +78,8 @@ def read_mooring_system(file: KeyedFile, level: float, depth: float) -> tuple[Mo
         for name in ("bodies", "rods")
         if sections[name]
     ]
-    return MooringSystem(depth, points, types, lines), items
+    bed = file.number("WtrDpth") - level if file.has("WtrDpth") else depth
+    return MooringSystem(bed, points, types, lines), items
 
 
 def _section(file: KeyedFile, titles: Sequence[str]) -> list[TableRow]:

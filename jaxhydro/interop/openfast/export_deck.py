@@ -1,0 +1,168 @@
+"""An OpenFAST 5 deck of a platform: ElastoDyn, HydroDyn, SeaState and MoorDyn.
+
+The counterpart of `openfast_deck`, which reads it back.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from jaxhydro.interop.conversion import ConvertedItem, Treatment
+from jaxhydro.interop.openfast.export_elastodyn import elastodyn_files
+from jaxhydro.interop.openfast.export_flow import exported_flow
+from jaxhydro.interop.openfast.export_members import member_tables
+from jaxhydro.interop.openfast.export_moordyn import moordyn_file
+from jaxhydro.interop.openfast.export_source import ExportedDeck, ExportSource, digits, filled
+from jaxhydro.interop.openfast.export_terms import exported_terms
+from jaxhydro.loads import (
+    AbstractLoad,
+    AddedMass,
+    Buoyancy,
+    CatenaryLines,
+    ComputedExcitation,
+    ComputedRadiation,
+    DriftTransfer,
+    EndInertia,
+    HydrostaticCoupling,
+    LinearDamping,
+    MooringLines,
+    MorisonDrag,
+    QuadraticDamping,
+    Stiffness,
+    StripInertia,
+    Weight,
+)
+from jaxhydro.loads.sea_state_law import SeaStateLaw
+from jaxhydro.parameters import AbstractEffect
+
+RIPPLE = 1e-6  # m, height of the waves of a deck with the keyword MCF: SeaState has none of it in still water
+GRID_MARGIN = 50.0  # m, of SeaState's grid beyond the hull, and below it
+WRITTEN = (
+    *(AddedMass, Buoyancy, CatenaryLines, ComputedExcitation, ComputedRadiation, DriftTransfer, EndInertia),
+    *(HydrostaticCoupling, LinearDamping, MooringLines, MorisonDrag, QuadraticDamping, Stiffness, StripInertia, Weight),
+)
+
+
+def export_deck(source: ExportSource) -> ExportedDeck:
+    """Files of an OpenFAST 5 deck, and what became of each item of a platform.
+
+    Args:
+        source: The platform.
+
+    Returns:
+        Texts of the files, in SI units, and files to copy.
+
+    Raises:
+        InputError: A table of potential flow cannot be read.
+    """
+    flow, terms = exported_flow(source), exported_terms(source)
+    tables = member_tables(source, flow.buoyant, bool(flow.excitation))
+    texts, items = elastodyn_files(source)
+    model, water = source.model, source.model.environment
+    displaced = int(model.conventions.waves_at == "displaced")
+    stretched = int(model.conventions.wetting == "instantaneous")
+    items = [_water(source), *items, *_members(source), *tables.notes.items("in the deck"), *flow.items, *terms.items]
+    lines = [load for load in map(plain_load, model.loads) if isinstance(load, CatenaryLines)]
+    for load in lines:
+        texts["moordyn.dat"], said = moordyn_file(source, load)
+        items += said
+    texts["hydrodyn.dat"] = filled(
+        "hydrodyn.dat",
+        name=source.name,
+        flow=flow,
+        terms=terms.rows(),
+        displaced=displaced,
+        stretched=stretched,
+        **tables.rows,
+    )
+    places = np.array([end for member in source.members for end in (member.a, member.b)] or [np.zeros(3)])
+    ripple = RIPPLE if tables.diameter else 0.0
+    texts["seastate.dat"] = filled(
+        "seastate.dat",
+        name=source.name,
+        half_width=digits(np.ceil(np.abs(places[:, :2]).max()) + GRID_MARGIN),
+        grid_depth=digits(min(float(water.depth), np.ceil(-places[:, 2].min()) + GRID_MARGIN)),
+        ripple=ripple,
+        stretched=stretched,
+        cylinder=digits(tables.diameter),
+    )
+    values = {key: digits(getattr(water, key)) for key in ("density", "depth", "gravity")}
+    texts["main.fst"] = filled("main.fst", name=source.name, lines=bool(lines), **values)
+    items += [_sea(ripple), *_forms(source), *_left_out(source)]
+    return ExportedDeck(texts | flow.texts, tuple(items), flow.files)
+
+
+def plain_load(load: AbstractLoad) -> AbstractLoad:
+    """A load without its law over the sea state."""
+    return load.load if isinstance(load, SeaStateLaw) else load
+
+
+def _water(source: ExportSource) -> ConvertedItem:
+    water = source.model.environment
+    told = f"{float(water.density):g} kg/m³, {float(water.depth):g} m, {float(water.gravity):g} m/s²"
+    return ConvertedItem("water", Treatment.TAKEN, f"WtrDens, WtrDpth and Gravity: {told}. MSL2SWL is 0.")
+
+
+def _members(source: ExportSource) -> Iterator[ConvertedItem]:
+    if not source.members:
+        return
+    text = (
+        f"{len(source.members)} members with their copies, cut at their stations, with coefficients by member (MCoefMod 3). "
+        "AxCd is 2 Cd_z; CaA and CaB are Ca over a ratio of sides (conventions, OpenFAST)."
+    )
+    yield ConvertedItem("members, coefficients", Treatment.TAKEN, text)
+    text = "HydroDyn's nodes are at most MDivSize apart; here strips are at Gauss points."
+    yield ConvertedItem("members: elements, points", Treatment.APPROXIMATED, text)
+
+
+def _sea(ripple: float) -> ConvertedItem:
+    if not ripple:
+        return ConvertedItem("sea", Treatment.TAKEN, "Still water (WaveMod 0). Set WaveMod in seastate.dat.")
+    text = (
+        f"A regular wave of {1e3 * ripple:g} mm stands for still water, as SeaState has no MacCamy-Fuchs diffraction with "
+        "WaveMod 0. Set WaveMod and WaveHs in seastate.dat."
+    )
+    return ConvertedItem("sea", Treatment.APPROXIMATED, text)
+
+
+def _forms(source: ExportSource) -> Iterator[ConvertedItem]:
+    """Forms of the strip loads."""
+    forms = source.model.conventions
+    if forms.directions == "body":
+        text = "HydroDyn loads strips along the axes of the upright platform; here they turn with it."
+        yield ConvertedItem("directions", Treatment.APPROXIMATED, text)
+    else:
+        yield ConvertedItem("directions", Treatment.TAKEN, "Axes of the upright platform, as in HydroDyn.")
+    if forms.wetting == "instantaneous":
+        text = "WaveStMod 1 and AMMod 1. Buoyancy is that up to still water (HstMod 0), as here."
+        yield ConvertedItem("wetting", Treatment.TAKEN, text)
+    else:
+        yield ConvertedItem("wetting", Treatment.TAKEN, "WaveStMod 0 and AMMod 0.")
+    yield ConvertedItem("waves_at", Treatment.TAKEN, f"WaveDisp {int(forms.waves_at == 'displaced')}, ExctnDisp alike.")
+    if forms.centripetal:
+        text = "Strips here feel the centripetal part of their acceleration too."
+        yield ConvertedItem("centripetal", Treatment.LEFT_OUT, text)
+    if any(isinstance(load, MorisonDrag) and not load.coupled for load in map(plain_load, source.model.loads)):
+        text = "HydroDyn's drag is by the vector of the flow (FDMod 0), not by each component."
+        yield ConvertedItem("drag_speed", Treatment.LEFT_OUT, text)
+
+
+def _left_out(source: ExportSource) -> Iterator[ConvertedItem]:
+    """Effects that OpenFAST has no counterpart for, with their values."""
+    model = source.model
+    for load in model.loads:
+        if isinstance(load, SeaStateLaw):
+            told = _told(load, [label for label in load.values if label not in load.load.values])
+            text = f"The deck has the coefficients of the reference sea; exponents are left out: {told}."
+            yield ConvertedItem("sea_state_laws", Treatment.LEFT_OUT, text)
+    for effect in (*map(plain_load, model.loads), *model.water, *model.sensors):
+        if isinstance(effect, WRITTEN):
+            continue
+        moved = [label for label, value in effect.values.items() if np.any(np.asarray(value) != effect.about(label).neutral)]
+        if moved or not effect.values:
+            text = f"The deck has no counterpart of {type(effect).__name__}: {_told(effect, moved) or 'no parameters'}."
+            yield ConvertedItem(effect.prefix, Treatment.LEFT_OUT, text)
+
+
+def _told(effect: AbstractEffect, labels: list[str]) -> str:
+    return ", ".join(f"{label} = {float(effect.values[label]):.4g} {effect.about(label).unit}" for label in labels)

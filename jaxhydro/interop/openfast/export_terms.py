@@ -1,0 +1,92 @@
+"""HydroDyn's AddF0, AddCLin, AddBLin and AddBQuad from a model's loads.
+
+F = F0 - C q - B v - Q |v| v, F0 and C in earth axes, B and Q in body axes, as the loads have them.
+
+References:
+    OpenFAST v5.0.0 (2895884), HydroDyn.f90, HydroDyn_CalcOutput (F_PtfmAdd).
+"""
+
+from dataclasses import dataclass, field
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.interop.conversion import ConvertedItem, Treatment
+from jaxhydro.interop.openfast.export_source import ExportSource, row
+from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, Stiffness
+from jaxhydro.loads.matrix import assemble
+from jaxhydro.rotations import rotation
+
+Matrix6 = Float[np.ndarray, "6 6"]
+
+
+@dataclass
+class ExportedTerms:
+    """Rows of HydroDyn's additional terms.
+
+    Attributes:
+        preload: N, N m, (6,).
+        stiffness: N/m, N, N m/rad.
+        linear: N s/m, N s, N m s/rad.
+        quadratic: N s²/m², N m s²/rad², on the diagonal.
+        items: What became of the loads.
+    """
+
+    preload: Float[np.ndarray, "6"] = field(default_factory=lambda: np.zeros(6))
+    stiffness: Matrix6 = field(default_factory=lambda: np.zeros((6, 6)))
+    linear: Matrix6 = field(default_factory=lambda: np.zeros((6, 6)))
+    quadratic: Matrix6 = field(default_factory=lambda: np.zeros((6, 6)))
+    items: list[ConvertedItem] = field(default_factory=list)
+
+    def rows(self) -> dict[str, list[str]]:
+        """Rows of each key, as HydroDyn's file has them."""
+        found = {"AddF0": [row(float(value)) for value in self.preload]}
+        matrices = {"AddCLin": self.stiffness, "AddBLin": self.linear, "AddBQuad": self.quadratic}
+        return found | {key: [row(*map(float, line)) for line in matrix] for key, matrix in matrices.items()}
+
+
+def exported_terms(source: ExportSource) -> ExportedTerms:
+    """Additional terms of a platform.
+
+    Args:
+        source: The platform.
+    """
+    terms = ExportedTerms()
+
+    def say(key: str, treatment: Treatment, meaning: str) -> None:
+        terms.items.append(ConvertedItem(key, treatment, meaning))
+
+    for load in source.model.loads:
+        if isinstance(load, Stiffness):
+            terms.stiffness += np.asarray(assemble(load.entries))
+            terms.preload += np.asarray(load.preload)
+            say(load.name, Treatment.TAKEN, "AddCLin, and the preload as AddF0, in earth axes as here.")
+        elif isinstance(load, MooringLines):
+            force, stiffness = (np.asarray(one) for one in _linear(load))
+            terms.preload += force
+            terms.stiffness += np.where(np.abs(stiffness) > 1e-12 * np.abs(stiffness).max(), stiffness, 0.0)
+            text = "AddF0 and AddCLin: the pull of the straight springs and its slope at the reference position."
+            say("mooring", Treatment.APPROXIMATED, text)
+        elif isinstance(load, LinearDamping):
+            terms.linear += np.asarray(assemble(load.entries))
+            say("linear_damping", Treatment.TAKEN, "AddBLin, in body axes as here.")
+        elif isinstance(load, QuadraticDamping):
+            terms.quadratic += np.diag(np.diag(np.asarray(assemble(load.entries))))
+            say("quadratic_damping", Treatment.TAKEN, "AddBQuad, in body axes as here.")
+    return terms
+
+
+@eqx.filter_jit
+def _linear(load: MooringLines) -> tuple[Float[Array, "6"], Float[Array, "6 6"]]:
+    """Force (N, N m) of straight springs in earth axes at the reference position, and its stiffness."""
+
+    def force(q: Float[Array, "6"]) -> Float[Array, "6"]:
+        turn = rotation(q[3:])
+        tension, towards = load.tension(q, turn)
+        pull, arm = turn @ (tension * towards), turn @ load.fairlead
+        return jnp.concatenate([pull, jnp.cross(arm, pull, axis=0)]).sum(axis=1)
+
+    return force(jnp.zeros(6)), -jax.jacfwd(force)(jnp.zeros(6))

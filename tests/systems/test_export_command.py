@@ -1,0 +1,35 @@
+"""`jaxhydro export`: what it writes, and what it refuses."""
+
+import json
+import re
+from pathlib import Path
+
+from typer.testing import CliRunner
+
+from jaxhydro.cli import app as cli
+
+
+def run(*words: object, status: int = 0) -> str:
+    """The output of a command in one line, after a check of its exit status."""
+    result = CliRunner().invoke(cli.app, [str(word) for word in words])
+    text = " ".join(re.sub("[│╭╮╰╯─]", " ", result.output).split())
+    assert result.exit_code == status, text
+    assert isinstance(result.exception, SystemExit | None) and "Traceback" not in text
+    return text
+
+
+def test_it_writes_a_deck_and_a_page(tmp_path: Path) -> None:
+    text = run("export", "oc3-hywind", "--out", tmp_path / "deck", "--format", "openfast")
+    page = (tmp_path / "deck" / "export.md").read_text(encoding="utf-8")
+    names = {path.name for path in (tmp_path / "deck").iterdir()}
+    assert {"main.fst", "elastodyn.dat", "hydrodyn.dat", "seastate.dat", "export.md", "potential.hst"} <= names
+    assert "left out" in text and "## Approximated" in page and "## Left out" in page and "OC3-Hywind spar" in page
+    told = run("export", "oc3-hywind", "--out", tmp_path / "deck", status=2)
+    assert "a folder that is new or empty" in told
+
+
+def test_other_formats_and_broken_calibrations_write_nothing(tmp_path: Path) -> None:
+    assert "openfast" in run("export", "oc3-hywind", "--out", tmp_path / "deck", "--format", "raft", status=2)
+    (tmp_path / "calibration.json").write_text(json.dumps({"nothing": 1}), encoding="utf-8")
+    run("export", "oc3-hywind", "--out", tmp_path / "deck", "--calibration", tmp_path / "calibration.json", status=2)
+    assert not (tmp_path / "deck").exists()
