@@ -204,13 +204,13 @@ def init(
 
 @app.command(epilog=arguments.CONVERTING)
 def convert(
-    source: Annotated[Path, typer.Argument(help="OpenFAST's main file, .fst.", metavar="SOURCE")],
+    source: Annotated[Path, typer.Argument(help="OpenFAST's main file (.fst) or a RAFT design (.yaml).", metavar="SOURCE")],
     out: Annotated[Path, typer.Option("--out", help="A new or an empty folder.")],
 ) -> None:
     """Make platform.yaml of another program's model, with a page that says what became of each item of it.
 
-    Of an OpenFAST deck: mass (ElastoDyn), members, coefficients, ballast and potential flow (HydroDyn), moorings (MoorDyn, as
-    a stiffness), water.
+    Of an OpenFAST deck: mass (ElastoDyn), members, coefficients, ballast and potential flow (HydroDyn), moorings (MoorDyn),
+    water. Of a RAFT design: members, masses of shell and ballast, turbine, moorings, water.
     """
     from jaxhydro.cli.convert_command import convert_model
 

@@ -4,7 +4,7 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from jaxhydro.cli.console import say
+from jaxhydro.cli.console import complain, say
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.files import check_new_folder, staged
@@ -60,13 +60,16 @@ def copy_whole(source: Path, target: Path) -> None:
 
 
 def print_losses(items: Sequence[ConvertedItem]) -> None:
-    """Print what was approximated, and the names of what was left out."""
+    """Print warnings, what was approximated, and the names of what else was left out."""
+    for item in items:
+        if item.warning:
+            complain(f"warning: {item.source}: {item.meaning}")
     close = [item for item in items if item.treatment is Treatment.APPROXIMATED]
     for item in close[:MAX_TOLD]:
         say(f"approximated: {item.source}: {item.meaning}")
     if len(close) > MAX_TOLD:
         say(f"and {len(close) - MAX_TOLD} more.")
-    if left := [item.source for item in items if item.treatment is Treatment.LEFT_OUT]:
+    if left := [item.source for item in items if item.treatment is Treatment.LEFT_OUT and not item.warning]:
         say(f"left out: {'; '.join(left)}.")
 
 

@@ -102,7 +102,8 @@ def heading_fault(model: Model, headings: Float[np.ndarray, " w"]) -> tuple[str,
     for key, table in ((k, t) for load in acting for k, t in _tables(load)):
         by_heading = getattr(table, "by_heading", None)
         if by_heading is None:
-            return f"an {key} table over headings, without `heading` in the platform file", "a table of one heading"
+            wanted = f"{key}.file with several wave headings, and no {key}.heading, for a sea of several headings"
+            return f"{wanted} (or no {key})", "a table of one heading"
         outside = ~by_heading.covers(headings)
         if outside.any():
             known = f"{math.degrees(float(by_heading.heading[0])):g} to {math.degrees(float(by_heading.heading[-1])):g} deg"

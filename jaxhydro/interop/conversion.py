@@ -23,11 +23,13 @@ class ConvertedItem:
         source: File and key, such as `HydroDyn.dat: Simple hydrodynamic coefficients`.
         treatment: What became of it.
         meaning: In a sentence: what it is in the platform file, what was assumed, or why it was left out.
+        warning: Whether the platform is wrong without it, so that it has to be looked at.
     """
 
     source: str
     treatment: Treatment
     meaning: str
+    warning: bool = False
 
 
 @dataclass(frozen=True)

@@ -113,7 +113,7 @@ def _mooring(deck: DeckFiles, water: WaterColumn, terms: AddedTerms, items: list
     if lines := _lines(deck, water, items):
         if terms.preload.any():
             text = "A constant force beside catenaries has no counterpart."
-            items.append(ConvertedItem(f"{deck.main.name}: AddF0", Treatment.LEFT_OUT, text))
+            items.append(ConvertedItem(f"{deck.main.name}: AddF0", Treatment.LEFT_OUT, text, warning=True))
         return {"mooring": lines} | ({"stiffness": matrix_entries("C", terms.stiffness)} if terms.stiffness.any() else {})
     if not terms.preload.any() and not terms.stiffness.any():
         return {}
@@ -131,7 +131,7 @@ def _lines(deck: DeckFiles, water: WaterColumn, items: list[ConvertedItem]) -> d
         section = catenary_section(system, water.depth, water.density, water.gravity)
     except NoCatenaries as error:
         text = f"The mooring is left out: {error}. Give `mooring` by hand."
-        items.append(ConvertedItem(where, Treatment.LEFT_OUT, text))
+        items.append(ConvertedItem(where, Treatment.LEFT_OUT, text, warning=True))
         return None
     text = "`mooring`: elastic catenaries in static balance. Their drag, inertia, damping and bending are left out."
     items.append(ConvertedItem(where, Treatment.APPROXIMATED, text))

@@ -88,9 +88,9 @@ class _Converter:
         self.hull: list[HullMember] = []
         self.parts: list[dict[str, Any]] = []
 
-    def tell(self, key: str, treatment: Treatment, meaning: str) -> None:
+    def tell(self, key: str, treatment: Treatment, meaning: str, warning: bool = False) -> None:
         """Note what became of an item."""
-        self.items.append(ConvertedItem(f"{self.file}: {key}", treatment, meaning))
+        self.items.append(ConvertedItem(f"{self.file}: {key}", treatment, meaning, warning))
 
     def conversion(self, stem: str) -> Conversion:
         """The whole platform file."""
@@ -134,7 +134,7 @@ class _Converter:
         unknown = sorted(set(member.model_extra or ()) - MESH_KEYS - MODULI)
         for key in unknown:
             hint = suggest(key, RaftMember.model_fields)
-            self.tell(f"{where}.{key}", LEFT_OUT, f"a key that RAFT does not have, either. {hint}".strip())
+            self.tell(f"{where}.{key}", LEFT_OUT, f"no key of RAFT. {hint}".strip(), warning=True)
 
     def _turbine(self) -> None:
         turbine = self.design.turbine
@@ -197,14 +197,14 @@ class _Converter:
         section, site = self.design.mooring, self.design.site
         if self.mooring is None:
             if section and section.get("file"):
-                self.tell("mooring.file", LEFT_OUT, f"lines of another program's file, {shown(section['file'])}")
+                self.tell("mooring.file", LEFT_OUT, f"lines of another program's file, {shown(section['file'])}", warning=True)
             return {}
         system = self.mooring.system(site.water_depth)
         density = self.mooring.rho or self.mooring.water_density or site.rho_water
         try:
             found = catenary_section(system, site.water_depth, density, site.g)
         except NoCatenaries as error:
-            self.tell("mooring", LEFT_OUT, f"nothing holds the platform: {error}")
+            self.tell("mooring", LEFT_OUT, f"nothing holds the platform: {error}", warning=True)
             return {}
         self.tell("mooring", TAKEN, f"{len(found['lines'])} elastic catenaries in static balance, as MoorPy has them")
         return {"mooring": found}

@@ -94,6 +94,7 @@ def test_ballast_is_added_to_the_mass(edited: Edited) -> None:
 def test_a_missing_blade_is_said(edited: Edited) -> None:
     deck = edited("elastodyn.dat", '"blade.dat"   BldFile2', '"gone.dat"   BldFile2')
     assert "gone.dat" in said(deck, "BldFile2", Treatment.LEFT_OUT)
+    assert [item.source for item in deck.items if item.warning] == ["elastodyn.dat: BldFile2", "main.fst: AddF0"]
     assert "blade 2" not in [one["name"] for one in deck.platform["rigid_body"]["parts"]]
 
 

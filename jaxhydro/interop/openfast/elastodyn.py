@@ -71,8 +71,8 @@ def read_parts(file: KeyedFile, level: float) -> TurbineParts:
     return TurbineParts(parts, [*items, *_reference(file)])
 
 
-def _said(file: KeyedFile, what: str, treatment: Treatment, meaning: str) -> ConvertedItem:
-    return ConvertedItem(f"{file.name}: {what}", treatment, meaning)
+def _said(file: KeyedFile, what: str, treatment: Treatment, meaning: str, warning: bool = False) -> ConvertedItem:
+    return ConvertedItem(f"{file.name}: {what}", treatment, meaning, warning)
 
 
 def _reference(file: KeyedFile) -> Iterator[ConvertedItem]:
@@ -122,7 +122,7 @@ def _tower(file: KeyedFile, items: list[ConvertedItem]) -> Iterator[dict[str, An
     path = beside(file, "TwrFile")
     if file.word("TwrFile").lower() in NOT_FILES or not path.is_file():
         meaning = f"No such file: {file.word('TwrFile')}. The tower's mass is left out. Add it to `rigid_body.parts`."
-        items.append(_said(file, "TwrFile", Treatment.LEFT_OUT, meaning))
+        items.append(_said(file, "TwrFile", Treatment.LEFT_OUT, meaning, warning=True))
         return
     tower = read_keyed_file(path, "the tower's file")
     rows, factor = tower.table("NTwInpSt", TOWER_COLUMNS, "HtFract"), tower.number("AdjTwMa", 1.0)
@@ -185,7 +185,7 @@ def _blade(
     path = beside(file, key)
     if file.word(key).lower() in NOT_FILES or not path.is_file():
         meaning = f"No such file: {file.word(key)}. The blade's mass is left out. Add it to `rigid_body.parts`."
-        items.append(_said(file, key, Treatment.LEFT_OUT, meaning))
+        items.append(_said(file, key, Treatment.LEFT_OUT, meaning, warning=True))
         return
     blade = read_keyed_file(path, "a blade's file")
     rows, nodes = blade.table("NBlInpSt", BLADE_COLUMNS, "BlFract"), file.whole("BldNodes")
