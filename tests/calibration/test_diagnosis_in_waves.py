@@ -148,7 +148,7 @@ def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
     assert_allclose(used.model.values["computed_excitation.share"], share.value)
 
 
-@pytest.mark.slow
+@pytest.mark.validate
 def test_a_table_that_says_otherwise_is_left_alone(tmp_path: Path) -> None:
     """Where strips have the force that acts, nothing is missing, whatever the table says."""
     campaign = campaign_of(tmp_path, pressure)
@@ -193,7 +193,7 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
     assert nothing is None
 
 
-@pytest.mark.slow
+@pytest.mark.validate
 def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
     """And nothing beside it, a wave's phase further off than slopes lead; where the campaign says that it can be so far off."""
     campaign_of(tmp_path, lambda omega: pressure(omega) * np.exp(-25j * omega**2 / G))
@@ -205,7 +205,7 @@ def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
     assert found.effects[0].parameters["wave_gauge_position.distance"].value == pytest.approx(-25.0, abs=0.3)
 
 
-@pytest.mark.slow
+@pytest.mark.validate
 def test_seas_are_as_the_campaign_states(tmp_path: Path) -> None:
     """Bound waves at some differences of frequencies, by their flow at the origin: the declared model follows such records to
     the noise, and so does a simulation of what a diagnosis has written."""
@@ -271,7 +271,7 @@ def test_a_wrong_sign_is_found(tmp_path: Path) -> None:
     assert "a wrong sign in heave" in page and "cannot tell it from a wrong sign in wave" in page
 
 
-@pytest.mark.slow
+@pytest.mark.validate
 def test_a_campaign_turned_round(tmp_path: Path) -> None:
     """As if its manifest said so, of a test that has a sign of its own, too."""
     campaign = campaign_of(tmp_path, pressure)
@@ -291,7 +291,7 @@ def test_a_campaign_turned_round(tmp_path: Path) -> None:
     assert again.manifest == one.manifest
 
 
-@pytest.mark.slow
+@pytest.mark.validate
 def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
     """What goes with neither motion nor waves: no name, no law, though the motion follows it; and the force as it acted,
     through the sea that was made ready."""
