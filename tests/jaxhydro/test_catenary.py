@@ -237,7 +237,7 @@ def test_natural_periods_follow_the_lines() -> None:
 SCHEMA_FAULTS = [
     (("lines", 0, "segments", 0, "type"), "chian", "lines[0].segments[0].type: expected a type", "Did you mean 'chain'?"),
     (("lines", 0, "segments", 0, "length"), 500.0, "lines[0].segments: expected at least 641", "found 500 m"),
-    (("lines", 0, "anchor"), [-837.6, 0, -210.0], "lines[0].anchor: expected a point above the sea bed", "z = -210 m"),
+    (("lines", 0, "anchor"), [-837.6, 0, -210.0], "lines[0].anchor: expected a point on or above the sea bed", "z = -210 m"),
     (("line_types", "chain", "diameter"), 1.0, "line_types.chain: expected a line that sinks", "in water"),
     (("line_types", "chain", "submerged_weight"), 5e3, "line_types.chain: expected either submerged_weight", "diameter"),
     (("line_types", "rope"), CHAIN, "line_types.rope: expected a type that a line has (chain)", "'rope'"),
