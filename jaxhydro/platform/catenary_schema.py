@@ -124,7 +124,8 @@ class Catenary(Consistent):
         for i, line in enumerate(self.lines):
             for end in ("anchor", "fairlead"):
                 if (z := getattr(line, end)[2]) < -depth * (1 + ON_SEABED):
-                    yield Problem(f"mooring.lines[{i}].{end}", f"a point on or above the sea bed, z = {-depth:g} m", f"z = {z:g} m")
+                    expected = f"a point on or above the sea bed, z = {-depth:g} m"
+                    yield Problem(f"mooring.lines[{i}].{end}", expected, f"z = {z:g} m")
         for name, kind in self.line_types.items():
             if (weight := kind.weight(density, gravity)) <= 0:
                 hint = "A line that floats is not modelled; `diameter` is that of the displaced water."
