@@ -1,7 +1,6 @@
 """Set-up of a study: motions, candidates, nuisance parameters, scales and priors."""
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -27,6 +26,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.loads import MooringLines
 
 DIRECTIONS_AT_ONCE = 32  # directions differentiated at a time
 PLAUSIBLE_DEVIATIONS = 2.0  # prior standard deviations from a neutral value to the further end of its plausible range
@@ -142,10 +142,9 @@ def set_up_study(
     for dof in ("heave", "roll", "pitch"):
         if dof in motions and (dof == "heave" or len(motions) > 1):
             nuisances[f"static_offset.{dof}.force"] = ({f"static_offset.{dof}.force": 1.0}, TRIM_PRIOR_WIDTH)
-    # a line's stiffness and length as springs have them; catenaries stay as declared
-    lines = sorted(
-        label.removesuffix(".stiffness") for label in declared.values if re.fullmatch(r"mooring\.line\d+\.stiffness", label)
-    )
+    # catenaries stay as declared
+    springs = [load for load in declared.loads if isinstance(load, MooringLines)]
+    lines = sorted(f"{load.prefix}.{line}" for load in springs for line in load.stiffness)
     if lines and not any(label.startswith("mooring.") for label in labels):
         values = {label: float(value) for label, value in declared.values.items() if label.startswith("mooring.")}
         for name in values:
@@ -222,8 +221,6 @@ def prior_width_of(label: str, declared: Model, waves: bool) -> float:
 
 def _pretension(model: Model, line: str) -> float:
     """Tension (N) of a mooring line in the reference position."""
-    from jaxhydro.loads import MooringLines
-
     load = next(load for load in model.loads if isinstance(load, MooringLines))
     tension, _ = load.tension(np.zeros(6), np.eye(3))  # type: ignore[arg-type]
     return float(np.asarray(tension)[int(line.removeprefix("mooring.line")) - 1])

@@ -124,7 +124,8 @@ def catenary_section(system: MooringSystem, depth: float, density: float, gravit
         kind = system.line_types[name]
         if (weight := kind.weight_in_water(density, gravity)) <= 0.0:
             raise NoCatenaries(f"lines of type {name} float: {weight:.4g} N/m in water")
-        types[name] = {"axial_stiffness": kind.axial_stiffness, "submerged_weight": float(f"{weight:.9g}")}
+        of_volume = {"mass_per_length": kind.mass_per_length, "diameter": kind.diameter}
+        types[name] = {"axial_stiffness": kind.axial_stiffness} | (of_volume if kind.diameter else {"submerged_weight": weight})
     section = {"kind": "catenary", "line_types": types, "lines": rows}
     return section if system.depth == depth else {**section, "seabed": {"depth": system.depth}}
 

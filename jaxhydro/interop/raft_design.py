@@ -199,10 +199,9 @@ class _Converter:
             if section and section.get("file"):
                 self.tell("mooring.file", LEFT_OUT, f"lines of another program's file, {shown(section['file'])}", warning=True)
             return {}
-        system = self.mooring.system(site.water_depth)
-        density = self.mooring.rho or self.mooring.water_density or site.rho_water
+        system = self.mooring.system(site.water_depth, site.rho_water)
         try:
-            found = catenary_section(system, site.water_depth, density, site.g)
+            found = catenary_section(system, site.water_depth, site.rho_water, site.g)
         except NoCatenaries as error:
             self.tell("mooring", LEFT_OUT, f"nothing holds the platform: {error}", warning=True)
             return {}

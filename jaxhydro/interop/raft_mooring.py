@@ -1,5 +1,6 @@
 """Mooring section of a RAFT design: points, line types and lines, as MoorPy reads them."""
 
+import math
 from collections.abc import Iterator
 from typing import Annotated, Any
 
@@ -79,10 +80,17 @@ class MooringSection(Consistent):
             if line.endA == line.endB:
                 yield Problem(f"lines[{i}].endB", "a point that is not endA", shown(line.endB))
 
-    def system(self, depth: float) -> MooringSystem:
-        """The moorings, in water of a depth (m) unless the section has one."""
+    def system(self, depth: float, density: float) -> MooringSystem:
+        """The moorings, in water of a depth (m) unless the section has one, and of a density (kg/m³).
+
+        Where the section has another density, the mass of lines is that which gives the same weight in this water.
+        """
+        less = (self.rho or self.water_density or density) - density
         points = {p.name: MooringPoint(p.name, p.type, p.location) for p in self.points}
-        types = {t.name: LineType(t.name, t.diameter, t.mass_density, t.stiffness) for t in self.line_types}
+        types = {
+            t.name: LineType(t.name, t.diameter, t.mass_density - less * math.pi / 4 * t.diameter**2, t.stiffness)
+            for t in self.line_types
+        }
         named = [(line.name or f"line{i}", line) for i, line in enumerate(self.lines, 1)]
         lines = {name: MooringLine(name, (line.endA, line.endB), line.length, line.type) for name, line in named}
         return MooringSystem(self.water_depth or depth, points, types, lines)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -116,13 +116,13 @@ def sea_of(setup: Setup, run: Run) -> IrregularSea:
     """
     plan, case = setup.plan, run.case
     kind = plan.spectrum.replace("_", "-")
-    if plan.spreading is not None:
+    how: dict[str, Any] = {"seed": run.seed, "amplitudes": plan.amplitudes, "low": plan.low, "cutoff": plan.cutoff}
+    how |= {"order": plan.order, "stretching": plan.stretching, "transient": plan.start}
+    if plan.spreading is None:
+        asked = RequestedSea(case.hs, case.tp, case.gamma, kind, heading=case.heading, **how)
+    else:
         system = WaveSystem(case.hs, case.tp, case.gamma, case.heading, plan.spreading, kind)
-        options = {"seed": run.seed, "amplitudes": plan.amplitudes, "low": plan.low, "cutoff": plan.cutoff}
-        options |= {"order": plan.order, "stretching": plan.stretching, "transient": plan.start}
-        return build_sea(setup.model, RequestedSea.of_systems((system,), **options), plan.duration).sea
-    how = (plan.low, plan.cutoff, plan.order, plan.stretching, case.heading, plan.start)
-    asked = RequestedSea(case.hs, case.tp, case.gamma, kind, run.seed, plan.amplitudes, *how)
+        asked = RequestedSea.of_systems((system,), **how)
     return build_sea(setup.model, asked, plan.duration).sea
 
 

@@ -42,8 +42,7 @@ def test_parts_between_free_points_are_segments_from_the_anchor() -> None:
     (line,) = found["lines"]
     assert line["anchor"] == [-800.0, 0.0, -200.0] and line["fairlead"] == [-50.0, 0.0, -14.0]
     assert line["segments"] == [{"type": "chain", "length": 420.0}, {"type": "rope", "length": 400.0}]
-    weight = (600.0 - DENSITY * np.pi / 4 * 0.3**2) * GRAVITY
-    assert found["line_types"]["chain"] == {"axial_stiffness": 3e9, "submerged_weight": pytest.approx(weight)}
+    assert found["line_types"]["chain"] == {"axial_stiffness": 3e9, "mass_per_length": 600.0, "diameter": 0.3}
     assert found["line_types"]["rope"]["submerged_weight"] == pytest.approx(50.0 * GRAVITY)
 
 

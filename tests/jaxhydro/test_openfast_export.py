@@ -104,7 +104,7 @@ def test_members_and_coefficients_come_back(trips: dict[str, RoundTrip], name: s
 
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_ends_have_the_same_added_mass_and_drag(trips: dict[str, RoundTrip], name: str) -> None:
-    """Sums of Ca_z times the volume, and of Cd_z times the area, of what is free of wet ends: rings and steps included."""
+    """Sum of Ca_z times volume, and sum of Cd_z times area, over all wet ends. Rings at steps are ends, too."""
     if name == "oc3-hywind":  # the taper itself is loaded in HydroDyn by AxCd and AxCa along it, which the reader only names
         assert "AxCd = 2 Cd_z" in said(trips[name].deck, "Ca_z, Cd_z", Treatment.TAKEN)
         rows = (trips[name].folder / "hydrodyn.dat").read_text(encoding="utf-8").splitlines()

@@ -243,7 +243,7 @@ def test_treatment_of_what_the_platform_file_does_not_have(tmp_path: Path) -> No
 def moorings(change: Callable[[dict[str, Any]], object] = lambda section: None) -> MooringSystem:
     section = contents()["mooring"]
     change(section)
-    return MooringSection.model_validate(section).system(80.0)
+    return MooringSection.model_validate(section).system(80.0, 1025.0)
 
 
 def test_mooring_section_is_read() -> None:
@@ -257,6 +257,13 @@ def test_mooring_section_is_read() -> None:
     assert found.lines["line2"].ends == ("anchor2", "fairlead2")
 
 
+def test_lines_weigh_the_same_in_water_of_another_density() -> None:
+    """RAFT gives the section's density to MoorPy; the platform file has the site's."""
+    kept, other = moorings(), moorings(lambda s: s.update(rho=1000.0))
+    weight = other.line_types["chain"].weight_in_water(1025.0, 9.81)
+    assert weight == pytest.approx(kept.line_types["chain"].weight_in_water(1000.0, 9.81), rel=1e-12)
+
+
 OC3_POINTS = [(853.87, 0.0), (-426.935, 739.47311), (-426.935, -739.47311)], [(5.2, 0.0), (-2.6, 4.5033), (-2.6, -4.5033)]
 
 
@@ -268,7 +275,7 @@ def test_linear_mooring_of_oc3_against_moorpy() -> None:
         section["points"] += [{"name": f"f{i}", "type": "vessel", "location": [*fairlead, -70.0]}]
         section["lines"] += [{"endA": f"a{i}", "endB": f"f{i}", "type": "main", "length": 902.2}]
     section["line_types"] = [{"name": "main", "diameter": 0.09, "mass_density": 77.7066, "stiffness": 384.243e6}]
-    system = MooringSection.model_validate(section).system(200.0)
+    system = MooringSection.model_validate(section).system(200.0, 1025.0)
     water = SimpleNamespace(density=1025.0, depth=320.0, gravity=9.81)
     load = catenary_lines(Catenary.model_validate(catenary_section(system, 320.0, 1025.0, 9.81)), water)
 

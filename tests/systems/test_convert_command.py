@@ -1,7 +1,6 @@
 """`jaxhydro convert`: what it writes, and the same motions as of a platform made by hand."""
 
 import json
-import re
 import shutil
 from pathlib import Path
 
@@ -9,10 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 import pandas as pd
 import pytest
-from typer.testing import CliRunner
+from test_cli import run
 
 import jaxhydro as jh
-from jaxhydro.cli import app as cli
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.interop.openfast_deck import read_openfast_deck
 from jaxhydro.platform.catenary_build import catenary_lines
@@ -23,15 +21,6 @@ DECK = Path(__file__).resolve().parents[1] / "fixtures" / "openfast_deck"
 REFERENCE = Path(__file__).resolve().parents[3] / "shared" / "reference"
 IEA15 = REFERENCE / "iea15-umaine" / "IEA-15-240-RWT-UMaineSemi.fst"
 with_reference = pytest.mark.skipif(not REFERENCE.exists(), reason=f"OpenFAST's decks and runs are not at {REFERENCE}")
-
-
-def run(*words: object, status: int = 0) -> str:
-    """The output of a command in one line, after a check of its exit status."""
-    result = CliRunner().invoke(cli.app, [str(word) for word in words])
-    text = " ".join(re.sub("[│╭╮╰╯─]", " ", result.output).split())
-    assert result.exit_code == status, text
-    assert isinstance(result.exception, SystemExit | None) and "Traceback" not in text
-    return text
 
 
 def test_it_writes_a_platform_and_says_what_became_of_the_deck(tmp_path: Path) -> None:

@@ -1,21 +1,9 @@
 """`jaxhydro export`: what it writes, and what it refuses."""
 
 import json
-import re
 from pathlib import Path
 
-from typer.testing import CliRunner
-
-from jaxhydro.cli import app as cli
-
-
-def run(*words: object, status: int = 0) -> str:
-    """The output of a command in one line, after a check of its exit status."""
-    result = CliRunner().invoke(cli.app, [str(word) for word in words])
-    text = " ".join(re.sub("[│╭╮╰╯─]", " ", result.output).split())
-    assert result.exit_code == status, text
-    assert isinstance(result.exception, SystemExit | None) and "Traceback" not in text
-    return text
+from test_cli import run
 
 
 def test_it_writes_a_deck_and_a_page(tmp_path: Path) -> None:
