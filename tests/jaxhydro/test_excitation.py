@@ -232,7 +232,7 @@ def test_seas_of_another_heading_are_refused(tmp_path: Path) -> None:
     for waves in (("--hs", "2", "--tp", "9"), ("--wave-height", "2", "--wave-period", "9")):
         words = ["simulate", str(path), *waves, "--heading", "30", "--out", str(tmp_path / "out")]
         result = CliRunner().invoke(cli.app, words)
-        assert result.exit_code == 2 and "360, the excitation.heading of the" in result.output, result.output
+        assert result.exit_code == 2 and "360 (excitation.heading of the platform file)" in result.output, result.output
     file = tmp_path / "sweep.yaml"
     file.write_text("platform: a.yaml\nscatter: [{hs: 2.0, tp: 9.0}]\nheadings: [0, 30]\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"excitation.heading: expected 30 deg, as in the sweep's headings, found 360 deg"):
