@@ -173,6 +173,33 @@ def simulate(
         raise typer.Exit(NOT_CONVERGED)
 
 
+@app.command(epilog=arguments.STATICS)
+def statics(
+    platform: Annotated[
+        str,
+        typer.Argument(
+            help="A platform file, or a built-in name (see `jaxhydro platforms`).", autocompletion=options.platforms_like
+        ),
+    ],
+    force: Annotated[
+        list[str] | None,
+        typer.Option(help="Steady force at the reference point, N or N m, as surge=1.5e6. May be repeated."),
+    ] = None,
+    offset: Annotated[
+        list[str] | None,
+        typer.Option(help="Largest offset from rest of a curve of restoring forces, m or deg, as surge=20. May be repeated."),
+    ] = None,
+    calibration: arguments.Calibrated = None,
+) -> None:
+    """Rest position, natural periods, forces by load, tensions of mooring lines, stiffness. Nothing is written."""
+    options.check_platform(platform)
+    forces = options.by_motion(force or [], "--force", "its force expected, as surge=1.5e6")
+    offsets = options.releases(offset or [], "--offset")
+    from jaxhydro.cli.statics_command import print_statics
+
+    print_statics(platform, forces, offsets, calibration)
+
+
 @app.command(epilog=arguments.STARTING)
 def init(
     folder: Annotated[Path, typer.Argument(help="The campaign's folder: a new or an empty one.", metavar="FOLDER")],

@@ -71,6 +71,15 @@ EXPORTING = "\n\n".join(
         "A folder that is not empty is refused. Exit status: 0 done; 2 the input is wrong, and nothing was written.",
     )
 )
+STATICS = "\n\n".join(
+    (
+        "[bold]Examples[/bold]",
+        "jaxhydro statics volturnus-s",
+        "jaxhydro statics my-platform/platform.yaml --offset surge=20 --offset sway=10",
+        "jaxhydro statics my-platform/platform.yaml --force surge=1.5e6 --force pitch=1.5e8",
+        "Forces act at the reference point, along the earth's axes: a thrust at a height also has a moment.",
+    )
+)
 STARTING = "\n\n".join(
     (
         "[bold]Examples[/bold]",

@@ -50,26 +50,39 @@ def regular(height: float | None, period: float | None) -> tuple[float, float] |
     return positive(height, "--wave-height"), positive(period, "--wave-period")
 
 
-def releases(given: list[str]) -> dict[str, float]:
-    """Offsets by motion (m, rad) of `surge=5` and the like (m, deg)."""
-    offsets: dict[str, float] = {}
+def by_motion(given: list[str], option: str, what: str) -> dict[str, float]:
+    """Numbers by motion, of texts such as `surge=5`.
+
+    Args:
+        given: What was given.
+        option: The option, for messages.
+        what: What the number is, with an example: "its offset expected, as surge=5".
+    """
+    found: dict[str, float] = {}
     for text in given:
         name, _, number = (part.strip() for part in text.partition("="))
         if name not in DOFS:
-            expected = f"a motion ({', '.join(DOFS)}) and its offset expected, as surge=5"
-            raise wrong("--release", f"{expected}; found {text!r}. {suggest(name, DOFS)}".strip())
+            expected = f"a motion ({', '.join(DOFS)}) and {what}"
+            raise wrong(option, f"{expected}; found {text!r}. {suggest(name, DOFS)}".strip())
         try:
             value = float(number)
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise wrong("--release", f"a number after {name}= expected, found {number!r}")
-        if name in offsets:
-            raise wrong("--release", f"{name} is given twice")
+            raise wrong(option, f"a number after {name}= expected, found {number!r}")
+        if name in found:
+            raise wrong(option, f"{name} is given twice")
+        found[name] = value
+    return found
+
+
+def releases(given: list[str], option: str = "--release") -> dict[str, float]:
+    """Offsets by motion (m, rad) of `surge=5` and the like (m, deg)."""
+    offsets = by_motion(given, option, "its offset expected, as surge=5")
+    for name, value in offsets.items():
         if name in ("roll", "pitch") and abs(value) >= 90:
-            raise wrong("--release", f"less than 90 deg expected, found {text!r}")
-        offsets[name] = math.radians(value) if name in DOFS[3:] else value
-    return offsets
+            raise wrong(option, f"less than 90 deg expected, found {name}={value:g}")
+    return {name: math.radians(value) if name in DOFS[3:] else value for name, value in offsets.items()}
 
 
 RESULTS = {  # file of results: how folders with it are called, and what it is of

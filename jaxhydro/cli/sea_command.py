@@ -13,6 +13,7 @@ from jaxhydro.cli.simulate_command import Job, finite, print_remarks, print_rest
 from jaxhydro.cli.simulation_files import Motion, SeaState, write_motion
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, RequestedSea
+from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.sea_of_request import build_sea, impossible, outside
 from jaxhydro.dynamics.simulate import free_decay, largest_step
 from jaxhydro.errors import InputError, Problem
@@ -36,7 +37,9 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
         raise InputError("--duration", [Problem("", expected, f"{kept.sum()} of them {job.dt:g} s apart")])
     say("Building the sea ...", stderr=True)
     sea, about, target, notes = build_sea(model, asked, job.duration)
-    print_remarks([*model.remarks, *outside(model, sea, about), *_limits(model, about, job.duration, asked.order)])
+    print_remarks(
+        [*model.remarks, *wave_remarks(model), *outside(model, sea, about), *_limits(model, about, job.duration, asked.order)]
+    )
     print_rest(model, job.platform)
     step = largest_step(model, asked.band(pace)[1]) if job.step is None else job.step
     about |= {"transient": transient, "step_at_most": step}

@@ -15,6 +15,7 @@ from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.cli.console import complain, say, table
 from jaxhydro.cli.simulation_files import Motion, write_motion
 from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.rest_remarks import rest_remarks, wave_remarks
 from jaxhydro.dynamics.simulate import default_step, free_decay
 from jaxhydro.dynamics.statics import equilibrium, stable_modes
 from jaxhydro.dynamics.table_ranges import regular_fault
@@ -116,7 +117,7 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
     if wave is not None:
         if (fault := regular_fault(model, wave[1])) is not None:
             raise InputError("--wave-period", [Problem("", *fault)])
-        print_remarks(sea_limits(*wave, model.environment, order=1))
+        print_remarks([*wave_remarks(model), *sea_limits(*wave, model.environment, order=1)])
         ramp = min(RAMP_PERIODS * wave[1], 0.25 * job.duration)
         sea = _sea(model, wave, heading, ramp, stretching)
         step = min(default_step(model), wave[1] / STEPS_PER_WAVE) if step is None else step
@@ -164,6 +165,7 @@ def print_rest(model: Model, platform: str, moved: Collection[str] = DOFS) -> No
     """Print where the platform rests, and its natural periods. Raises EquilibriumError where it does not stay there once it is
     `moved`."""
     rest, modes = np.asarray(equilibrium(model)), stable_modes(model, moved)
+    print_remarks(rest_remarks(model, jnp.asarray(rest)))
     if modes.unstable:
         complain(f"warning: the platform is unstable in {' and '.join(modes.unstable)}, which nothing moves here")
     rest = rest.round(8) + 0.0  # no -0.0000

@@ -14,6 +14,7 @@ import xarray as xr
 from jaxtyping import Float
 
 from jaxhydro.cli.calibrated_model import calibration_file
+from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.errors import InputError, Problem, read_yaml
 from jaxhydro.files import check_folder
@@ -145,7 +146,7 @@ def prepared(sweep: Sweep, source: str) -> PreparedSweep:
     supports_of(setup, source)
     shares = shares_in_band(plan)
     known += notes(plan, setup.model, shares, failing)
-    remarks = (*setup.model.remarks, *outside(plan, setup.model, failing))
+    remarks = (*setup.model.remarks, *wave_remarks(setup.model), *outside(plan, setup.model, failing))
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
     inputs = Inputs(plan, _platform_text(sweep.platform), text)
     return PreparedSweep(inputs, setup, source, sweep.platform, sweep.calibration, shares, known, remarks)

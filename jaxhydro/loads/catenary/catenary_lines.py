@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.catenary.catenary_profile import Segments
+from jaxhydro.loads.catenary.catenary_profile import Segments, length_on_seabed
 from jaxhydro.loads.catenary.catenary_tension import end_tension
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import Parameter, parameter, parameters
@@ -68,6 +68,10 @@ class CatenaryLines(AbstractLoad):
         square = (pull**2).sum(axis=0)
         size = jnp.sqrt(jnp.where(square > 0, square, 1.0))
         return jnp.where(square > 0, size, 0.0), pull / size
+
+    def on_seabed(self, vertical: Float[Array, " l"]) -> Float[Array, " l"]:
+        """Unstretched length of each line that rests on the seabed (m), with a vertical tension at the fairlead (N)."""
+        return length_on_seabed(vertical, self.segments())
 
     def act(self, now: Instant, memory: Any) -> Action:
         pull = self._pull(now.position, now.rotation)

@@ -73,6 +73,26 @@ def reach(
     return x, z
 
 
+def length_on_seabed(vertical: Float[Array, " l"], segments: Segments) -> Float[Array, " l"]:
+    """Unstretched length of lines that rests on the seabed.
+
+    Args:
+        vertical: Vertical tension at the fairlead (N); positive where the line pulls it down.
+        segments: The lines.
+
+    Returns:
+        Length (m), (l,).
+
+    References:
+        Jonkman 2007, NREL/TP-500-41958, section 2.6: what is suspended weighs as much as the vertical tension.
+    """
+    upper, rests = vertical, jnp.zeros_like(vertical)
+    for length, weight in zip(segments.length, segments.weight):
+        hanging = jnp.where(segments.grounded, jnp.clip(upper / weight, 0.0, length), length)
+        upper, rests = upper - weight * hanging, rests + length - hanging
+    return rests
+
+
 def _atanh_over(ratio: Float[Array, " l"]) -> Float[Array, " l"]:
     """atanh(u) / u."""
     small = ratio < SMALL_RATIO

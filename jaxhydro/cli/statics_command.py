@@ -1,0 +1,127 @@
+"""Command `statics`: where a platform rests, by which forces, and what its moorings do."""
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.cli.console import say, table
+from jaxhydro.cli.simulate_command import calibrated, print_remarks, print_rest
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.static_forces import LineState, forces_by_load, line_states, offset_curve
+from jaxhydro.dynamics.statics import equilibrium, linearised
+from jaxhydro.environment import DOFS
+from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
+from jaxhydro.loads.mooring_lines import MooringLines
+from jaxhydro.loads.static_force import StaticForce
+from jaxhydro.platform.build import build
+from jaxhydro.platform.schema import load_platform
+from jaxhydro.units import for_people, unit_of
+
+POINTS = 6  # of an offset curve
+NO_FORCE = 1e-9  # of the weight: what is below is rounding
+
+
+def print_statics(platform: str, force: Mapping[str, float], offset: Mapping[str, float], calibration: Path | None) -> None:
+    """Print rest position, periods, forces by load, mooring lines and stiffness; offset curves; a steady force's offset.
+
+    Args:
+        platform: A platform file, or a built-in name.
+        force: Steady force at the reference point by motion (N, N m).
+        offset: Largest offset of a curve by motion (m, rad).
+        calibration: A calibration's folder or file, whose values are taken.
+
+    Raises:
+        InputError: The platform or the calibration cannot be used.
+        EquilibriumError: The platform does not rest, with the force or without.
+    """
+    declared = load_platform(platform)
+    model = build(declared)
+    if calibration is not None:
+        model = calibrated(model, platform, declared.name, calibration)
+    print_remarks(model.remarks)
+    print_rest(model, platform)
+    rest = equilibrium(model)
+    _print_forces(model, rest)
+    _print_lines(model, rest, "at rest")
+    _print_stiffness(model, rest)
+    for dof, most in offset.items():
+        _print_curve(model, dof, float(np.asarray(rest)[DOFS.index(dof)]), most)
+    if force:
+        pushed = model.with_effect(StaticForce(force=dict(force)))
+        words = ", ".join(f"{dof} {value:g} {_force_unit(dof)}" for dof, value in force.items())
+        position = equilibrium(pushed)
+        at = np.asarray(position).round(8) + 0.0
+        rows = [(f"{dof} ({unit_of(dof)})", f"{float(for_people(dof, q).round(4)) + 0.0:.4f}") for dof, q in zip(DOFS, at)]
+        table(f"Under a steady force: {words}", ("Motion", "Position"), rows)
+        _print_lines(pushed, position, "under the steady force")
+
+
+def _force_unit(dof: str) -> str:
+    return "N m" if dof in DOFS[3:] else "N"
+
+
+def _print_forces(model: Model, position: Float[Array, "6"]) -> None:
+    forces = forces_by_load(model, position)
+    least = NO_FORCE * float(model.body.mass * model.environment.gravity)
+    heads = ("Load", *(f"{dof} ({'MN m' if dof in DOFS[3:] else 'MN'})" for dof in DOFS))
+    rows = [(load, *(f"{x / 1e6:.5g}" if abs(x) > least else "0" for x in six)) for load, six in forces.items()]
+    table("Forces at rest, about the reference point", heads, rows)
+
+
+def _print_lines(model: Model, position: Float[Array, "6"], when: str) -> None:
+    if not (lines := line_states(model, position)):
+        return
+    heads = ("Line", "Tension (kN)", "Below the horizontal (deg)", "Strain (%)", "On the sea bed (m)")
+    rows = [
+        (
+            str(i + 1),
+            f"{line.tension / 1e3:.5g}",
+            f"{math.degrees(line.angle):.4g}",
+            f"{100 * line.strain:.3g}",
+            f"{line.on_seabed:.4g}",
+        )
+        for i, line in enumerate(lines)
+    ]
+    table(f"Mooring lines {when}, at the fairlead", heads, rows)
+
+
+def _print_stiffness(model: Model, position: Float[Array, "6"]) -> None:
+    """Stiffness of all loads, and of the moorings alone."""
+    moorings = tuple(load for load in model.loads if isinstance(load, MooringLines | CatenaryLines))
+    heads = ("", *DOFS)
+    parts = [("Stiffness at rest (MN/m, MN, MN m)", model)]
+    if moorings and len(moorings) < len(model.loads):
+        parts.append(("Stiffness of the mooring lines alone", dataclasses.replace(model, loads=moorings)))
+    for title, part in parts:
+        matrix = np.asarray(linearised(part, position)[1]) / 1e6
+        largest = np.sqrt(np.outer(abs(np.diag(matrix)), abs(np.diag(matrix))))
+        rows = [
+            (dof, *(f"{x:.5g}" if abs(x) > NO_FORCE * most else "0" for x, most in zip(row, scale)))
+            for dof, row, scale in zip(DOFS, matrix, largest)
+        ]
+        table(title, heads, rows)
+
+
+def _print_curve(model: Model, dof: str, rest: float, most: float) -> None:
+    offsets = rest + np.linspace(0.0, most, POINTS)
+    curve = offset_curve(model, dof, jnp.asarray(offsets))
+    heads = [f"{dof} ({unit_of(dof)})", f"Force (k{_force_unit(dof)})"]
+    others = [other for other in ("surge", "sway", "heave", "roll", "pitch") if other != dof]
+    heads += [f"{other} ({unit_of(other)})" for other in others]
+    tensions: list[list[LineState]] = [line_states(model, jnp.asarray(one)) for one in curve.position]
+    heads += [f"Line {i + 1} (kN)" for i in range(len(tensions[0]))]
+    rows = []
+    least = NO_FORCE * float(model.body.mass * model.environment.gravity)
+    for position, force, lines in zip(curve.position.round(8) + 0.0, curve.force, tensions):
+        motion = dict(zip(DOFS, position, strict=True))
+        cells = [f"{float(for_people(dof, motion[dof])):.4g}", "0" if abs(force) < least else f"{force / 1e3:.5g}"]
+        cells += [f"{float(for_people(other, motion[other]).round(3)) + 0.0:.3f}" for other in others]
+        rows.append((*cells, *(f"{line.tension / 1e3:.5g}" for line in lines)))
+    table(f"Held in {dof}: the force that it takes, and the tensions", heads, rows)
+    if not np.isfinite(curve.force).all():
+        say("nan: the platform or a line finds no balance there")

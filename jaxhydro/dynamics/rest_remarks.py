@@ -1,0 +1,48 @@
+"""Remarks on a platform's rest position, and on loads that waves do not reach."""
+
+import math
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.static_forces import forces_by_load
+from jaxhydro.environment import DOFS
+from jaxhydro.loads.wave_drift import WaveDrift
+from jaxhydro.remarks import Remark
+
+MAX_HEAVE = 0.1  # of the draught: heave at rest from which the platform does not rest as it was drawn
+MAX_TILT = math.radians(3.0)
+
+
+def rest_remarks(model: Model, rest: Float[Array, "6"]) -> list[Remark]:
+    """Warning where the platform rests far above, below or aslant of its reference position.
+
+    Args:
+        model: The platform.
+        rest: Position of rest (m, rad), (6,).
+    """
+    at = np.asarray(rest)
+    lowest = float(np.min(np.asarray(model.hull.extremities())[2], initial=0.0))
+    found = []
+    if lowest < 0 and abs(at[2]) > -MAX_HEAVE * lowest:
+        vertical = {name: float(force[2]) / 1e6 for name, force in forces_by_load(model, jnp.zeros(6)).items() if force[2]}
+        sums = ", ".join(f"{name} {value:+.5g} MN" for name, value in vertical.items())
+        where = f"{abs(at[2]):.3g} m {'above' if at[2] > 0 else 'below'} the reference position"
+        found.append(Remark(f"the platform rests {where}. Vertical forces there: {sums}", warning=True))
+    for i in (3, 4):
+        if abs(at[i]) > MAX_TILT:
+            angle = math.degrees(at[i])
+            text = f"the platform rests with a {DOFS[i]} of {angle:.3g} deg: check centre of mass and ballast"
+            found.append(Remark(text, warning=True))
+    return found
+
+
+def wave_remarks(model: Model) -> list[Remark]:
+    """Warning where no load of the model takes anything from waves: no strips, no excitation or drift table."""
+    drifts = any(isinstance(load, WaveDrift) for load in model.loads)
+    if model.hull.strips.element or drifts or model.excitation is not None or model.transfer is not None:
+        return []
+    text = "waves do not act on this platform: it has no members, and no excitation or drift table"
+    return [Remark(text, warning=True)]
