@@ -7,8 +7,8 @@ a step.
 from typing import NamedTuple
 
 import numpy as np
+import scipy  # scipy.signal is imported when it is used: it takes a second
 from jaxtyping import Float
-from scipy import signal
 
 from jaxhydro.environment import DOFS
 from jaxhydro.waves.irregular import sampling_interval
@@ -76,8 +76,8 @@ def power_spectrum(
     """
     step, x = _record(time, x)
     count, shared, window = _segments(len(x), step, segment, overlap, window)
-    frequency, density = signal.welch(x, 1 / step, window, count, shared, detrend="constant")
-    weight = signal.get_window(window, count)
+    frequency, density = scipy.signal.welch(x, 1 / step, window, count, shared, detrend="constant")
+    weight = scipy.signal.get_window(window, count)
     resolution = float(np.sum(weight**2) / (np.sum(weight) ** 2 * step))
     return PowerSpectrum(frequency, density, 1 + (len(x) - count) // (count - shared), resolution)
 
@@ -185,7 +185,7 @@ def band_weights(
     """
     _in_order(low, high)
     size, shared, name = _segments(count, step, segment, overlap, window)
-    taper = signal.get_window(name, size)
+    taper = scipy.signal.get_window(name, size)
     f = np.fft.rfftfreq(size, step)
     edges = np.concatenate([f[:1], 0.5 * (f[1:] + f[:-1]), f[-1:]])
     share = np.clip((np.minimum(high, edges[1:]) - np.maximum(low, edges[:-1])) / np.diff(edges), 0.0, 1.0)
@@ -277,8 +277,8 @@ def transfer_function(
     if len(wave) < 2 * count - shared:
         raise ValueError(f"two segments or more expected, found a record of {len(wave) * step:g} s, segments of {segment:g} s")
     options = {"fs": 1 / step, "window": window, "nperseg": count, "noverlap": shared, "detrend": "constant"}
-    frequency, across = signal.csd(wave, motion, **options)
-    of_wave, of_motion = (signal.welch(x, **options)[1] for x in (wave, motion))
+    frequency, across = scipy.signal.csd(wave, motion, **options)
+    of_wave, of_motion = (scipy.signal.welch(x, **options)[1] for x in (wave, motion))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where(of_wave > 0, across / of_wave, np.nan)
         coherence = np.where(of_wave * of_motion > 0, np.abs(across) ** 2 / (of_wave * of_motion), np.nan)

@@ -3,7 +3,6 @@
 import re
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -16,6 +15,7 @@ from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
 from jaxhydro.loads.mooring_lines import MooringLines
+from jaxhydro.quick_jit import quick_jit
 from jaxhydro.rotations import rotation
 from jaxhydro.waves.sea import StillWater
 
@@ -39,7 +39,7 @@ def forces_by_load(model: Model, position: Float[Array, "6"]) -> dict[str, np.nd
     return found
 
 
-@eqx.filter_jit
+@quick_jit
 def _forces(model: Model, position: Float[Array, "6"]) -> Float[Array, "k 6"]:
     state = State(position, jnp.zeros(6), model.rest().memory)
     now = model.instant(jnp.zeros(()), state, StillWater())
@@ -85,7 +85,7 @@ def line_states(model: Model, position: Float[Array, "6"]) -> list[LineState]:
     return found
 
 
-@eqx.filter_jit
+@quick_jit
 def _line_columns(
     load: MooringLines | CatenaryLines, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
 ) -> tuple[Float[Array, " l"], Float[Array, " l"], Float[Array, " l"], Float[Array, " l"]]:
@@ -129,7 +129,7 @@ def offset_curve(model: Model, dof: str, offsets: Float[Array, " n"]) -> OffsetC
     return OffsetCurve(dof, position, force)
 
 
-@eqx.filter_jit
+@quick_jit
 def _held(model: Model, dof: int, offsets: Float[Array, " n"]) -> tuple[Float[Array, "n 6"], Float[Array, " n"]]:
     def held(offset: Float[Array, ""]) -> tuple[Float[Array, "6"], Float[Array, ""]]:
         position = held_at(model, dof, offset)

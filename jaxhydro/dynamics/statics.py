@@ -11,7 +11,9 @@ from jaxtyping import Array, Float
 
 from jaxhydro.choices import unknown
 from jaxhydro.dynamics.model import Model, State
+from jaxhydro.dynamics.newton_euler import body_acceleration
 from jaxhydro.environment import DOFS
+from jaxhydro.quick_jit import on_device, quick_jit
 from jaxhydro.waves.sea import StillWater
 
 if TYPE_CHECKING:
@@ -56,7 +58,8 @@ def _unbalanced(position: Float[Array, "6"], model: Model, held: _HeldMotion | N
 
 
 @eqx.filter_custom_jvp
-def _root(model: Model, held: _HeldMotion | None) -> Float[Array, "6"]:
+def _root(model: Model, held: _HeldMotion | None) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
+    """Equilibrium, and what is out of balance one step of Newton's method before it."""
     # Newton's iteration is written out: tracing a library's takes longer than all the rest of a command's start, and programs
     # with the library's implicit derivative cannot be kept compiled
 
@@ -64,32 +67,34 @@ def _root(model: Model, held: _HeldMotion | None) -> Float[Array, "6"]:
         found = _unbalanced(q, model, held)
         return found, found
 
-    def going(at: tuple[Array, Array, Array]) -> Array:
-        root, step, count = at
+    def going(at: tuple[Array, Array, Array, Array]) -> Array:
+        root, step, count, _ = at
         return (jnp.abs(step).max() > NEWTON_TOLERANCE * (1 + jnp.abs(root).max())) & (count < ITERATIONS)
 
-    def newton(at: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
-        root, _, count = at
+    def newton(at: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
+        root, _, count, _ = at
         slopes, found = jax.jacfwd(balance, has_aux=True)(root)
         # the least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is
         step = jnp.linalg.pinv(slopes, rtol=MIN_RESTORING) @ found
-        return root - step, step, count + 1
+        return root - step, step, count + 1, found
 
-    return jax.lax.while_loop(going, newton, (jnp.zeros(6), jnp.full(6, jnp.inf), jnp.asarray(0)))[0]
+    never = jnp.full(6, jnp.inf)
+    root, _, _, unbalanced = jax.lax.while_loop(going, newton, (jnp.zeros(6), never, jnp.asarray(0), never))
+    return root, unbalanced
 
 
 @_root.def_jvp
 def _root_jvp(primals, tangents):
     """By the implicit function theorem."""
-    root = _root(*primals)
+    root, unbalanced = _root(*primals)
     _, balance = eqx.filter_jvp(lambda *at: _unbalanced(root, *at), primals, tangents)
-    return root, -jnp.linalg.pinv(jax.jacfwd(_unbalanced)(root, *primals), rtol=MIN_RESTORING) @ balance
+    change = -jnp.linalg.pinv(jax.jacfwd(_unbalanced)(root, *primals), rtol=MIN_RESTORING) @ balance
+    return (root, unbalanced), (change, jnp.zeros(6))
 
 
-@eqx.filter_jit
+@quick_jit
 def _solve(model: Model) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
-    position = _root(model, None)
-    return position, _balance(position, model)
+    return _root(model, None)
 
 
 def equilibrium(model: Model) -> Float[Array, "6"]:
@@ -108,11 +113,11 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
             on its side.
     """
     position, residual = _solve(model)
-    if isinstance(residual, jax.core.Tracer):
+    if isinstance(position, jax.core.Tracer):
         return position
     at = np.asarray(position)
     worst = int(np.argmax(np.abs(np.nan_to_num(np.asarray(residual), nan=np.inf))))
-    if not np.abs(np.asarray(residual)).max() < 1e-8:
+    if not (np.abs(np.asarray(residual)).max() < 1e-8 and np.isfinite(at).all()):
         off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else MOMENT_ARM * float(model.size))
         raise EquilibriumError(
             f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
@@ -135,7 +140,7 @@ def held_at(model: Model, dof: int, value: Float[Array, ""]) -> Float[Array, "6"
         dof: Number of the motion that is held.
         value: Where it is held (m or rad).
     """
-    return _root(model, _HeldMotion(jnp.zeros(6).at[dof].set(1.0), jnp.asarray(value, float)))
+    return _root(model, _HeldMotion(jnp.zeros(6).at[dof].set(1.0), jnp.asarray(value, float)))[0]
 
 
 class Modes(NamedTuple):
@@ -204,7 +209,7 @@ def strain_energy(stiffness: Float[Array, "6 6"], vectors: Float[Array, "6 m"]) 
     return energy / energy.sum(axis=0)
 
 
-@eqx.filter_jit
+@quick_jit
 def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, "6 6"], Float[Array, "6 6"]]:
     """Mass matrix with added mass, and stiffness matrix, of small motion about a position of rest.
 
@@ -220,16 +225,14 @@ def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, 
     """
     rest = model.rest()
 
-    def acceleration(q: Float[Array, "6"]) -> Float[Array, "6"]:
-        return model.rate(jnp.zeros(()), State(q, jnp.zeros(6), rest.memory), StillWater()).velocity
-
-    def mass_of(q: Float[Array, "6"]) -> Float[Array, "6 6"]:
+    def acceleration(q: Float[Array, "6"]) -> tuple[Float[Array, "6"], Float[Array, "6 6"]]:
         now = model.instant(jnp.zeros(()), State(q, jnp.zeros(6), rest.memory), StillWater())
         total = model.sum_of_loads(now, rest.memory)
-        return model.body.mass_matrix() + total.added_mass + total.moments @ total.masses
+        mass = model.body.mass_matrix() + total.added_mass + total.moments @ total.masses
+        return body_acceleration(model.body, jnp.zeros(6), total, model.conventions.directions == "earth"), mass
 
-    mass = mass_of(position)
-    return mass, -mass @ jax.jacfwd(acceleration)(position)
+    slopes, mass = jax.jacfwd(acceleration, has_aux=True)(position)
+    return mass, -mass @ slopes
 
 
 def widths(model: Model) -> np.ndarray:
@@ -260,7 +263,7 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     square, vectors = square.real[order], vectors.real[:, order]
     largest = np.abs(square).max()
     kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
-    share = strain_energy(jnp.asarray(stiffness), jnp.asarray(vectors[:, kept]))
+    share = strain_energy(on_device(stiffness), on_device(vectors[:, kept]))
     motion = tuple(DOFS[int(i)] for i in np.argmax(np.asarray(share), axis=0))
     vectors = vectors * widths(model)[:, None]
     shape = vectors[:, kept].T

@@ -8,13 +8,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.coefficient_labels import Shares, owners, shares_of
 from jaxhydro.hull.strips import Member, Strips
 from jaxhydro.hull.waterplane import wet_section
+from jaxhydro.quick_jit import on_device
 
 
 class Ends(eqx.Module):
@@ -98,7 +98,7 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     columns = list(zip(*(_free(rows) + faces), strict=True)) if rows else [()] * len(_End._fields)
     vectors = [np.array(column, float).reshape(-1, 3).T for column in columns[:3]]
     numbers = [np.array(column, float) for column in columns[3:-1]]
-    fields: dict[str, Any] = dict(zip(_End._fields, map(jnp.asarray, (*vectors, *numbers))))
+    fields: dict[str, Any] = dict(zip(_End._fields, map(on_device, (*vectors, *numbers))))
     shares = shares_of((member.group, member.shared) for member in members)
     return Ends(**fields, label=columns[-1], labels=labels, strip=tuple(of), shares=shares, afloat=tuple(afloat))
 

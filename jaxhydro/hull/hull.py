@@ -15,6 +15,7 @@ from jaxtyping import Array, Float
 from jaxhydro.hull.ends import Ends, ends
 from jaxhydro.hull.strips import END_WETTING_LENGTH, FACE_WETTING_LENGTH, Elements, Member, Strips, cut
 from jaxhydro.hull.waterplane import Leaning, Waterplane, leaning, segment, waterplane
+from jaxhydro.quick_jit import on_device, quick_jit
 from jaxhydro.scales import covered, entered
 from jaxhydro.waves.flow import Cylinders
 
@@ -64,13 +65,13 @@ class Hull(eqx.Module):
         whole = len(tips.label) - len(tips.strip)
         lean = leaning(members)
         points = whole + (0 if lean is None else lean.area.size)
-        cylinders = Cylinders(jnp.array(radii), (*index, *[-1] * points))
+        cylinders = Cylinders(on_device(np.array(radii, float)), (*index, *[-1] * points))
         gauges = np.concatenate([elements.gauge, tips.gauge[:, :whole]], axis=1).round(9)
         place, which = np.unique(gauges, axis=1, return_inverse=True)
         gauge_of = tuple(map(int, which.reshape(-1)))
-        matrices = eqx.filter_jit(_matrices)(elements, strips, tips, powers)
-        more = (jnp.asarray(size), waterplane(members, size), lean)
-        return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices, *more)
+        matrices = quick_jit(_matrices)(elements, strips, tips, powers)
+        more = (on_device(float(size)), waterplane(members, size), lean)
+        return cls(elements, strips, tips, cylinders, on_device(place), gauge_of, *matrices, *more)
 
     def turned(self, rotation: Float[Array, "3 3"]) -> "Hull":
         """Hull with the directions of strips and ends rotated about their points."""

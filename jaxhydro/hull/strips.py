@@ -19,12 +19,12 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.coefficient_labels import Shares, owners, shares_of
 from jaxhydro.hull.waterplane import wet_section
+from jaxhydro.quick_jit import on_device
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
 VERTICAL_COSINE = math.cos(math.radians(10.0))  # of an axis that counts as vertical
@@ -291,9 +291,9 @@ def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]
         *parts, home, radius = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
         radius_of = tuple(map(float, radius))
         label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
-    of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(jnp.asarray, parts), strict=True))
+    of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(on_device, parts), strict=True))
     strips = Strips(**of_strips, element=element_of, diffracts=radius_of)
     names = ("start", "axis", "length", "thickness", "gauge", "circle")
-    of_elements: dict[str, Any] = dict(zip(names, map(jnp.asarray, whole), strict=True))
+    of_elements: dict[str, Any] = dict(zip(names, map(on_device, whole), strict=True))
     shares = shares_of((member.group, member.shared) for member in members)
     return Elements(**of_elements, label=label_of, labels=tuple(labels), shares=shares), strips

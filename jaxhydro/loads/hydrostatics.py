@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any, ClassVar
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -14,6 +13,7 @@ from jaxhydro.hull.strips import END_WETTING_LENGTH, Member
 from jaxhydro.hull.waterplane import chord, segment
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
+from jaxhydro.quick_jit import on_device, quick_jit
 from jaxhydro.rotations import cross, rotation
 from jaxhydro.scales import covered, entered
 
@@ -156,7 +156,7 @@ class Buoyancy(AbstractLoad):
         }
 
 
-@eqx.filter_jit
+@quick_jit
 def _upright(load: Buoyancy, weight_density: Float[Array, ""]):
     zeros = jnp.zeros(6)
     slope = jax.jacfwd(lambda q: load.force(q, rotation(q[3:]), weight_density))(zeros)
@@ -209,13 +209,13 @@ def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
     if rows:
         arrays = [np.stack(column, axis=-1) for column in zip(*rows, strict=True)]
     names = ("lower", "axis", "length", "size", "taper", "shape", "bend", "directions", "thickness")
-    pieces: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
+    pieces: dict[str, Any] = dict(zip(names, map(on_device, arrays), strict=True))
     of_tubes = [triple, np.zeros((3, 2, 0)), flat, flat]
     if tubes:
         of_tubes = [np.stack(column, axis=-1) for column in zip(*tubes, strict=True)]
-    pieces |= zip(("tube", "tube_across", "tube_radius", "tube_length"), map(jnp.asarray, of_tubes), strict=True)
-    pieces["hull_size"] = jnp.asarray(size)
-    return Buoyancy(**pieces, extra_force=jnp.asarray(0.0), extra_stiffness=jnp.asarray(np.zeros(3)))
+    pieces |= zip(("tube", "tube_across", "tube_radius", "tube_length"), map(on_device, of_tubes), strict=True)
+    pieces["hull_size"] = on_device(float(size))
+    return Buoyancy(**pieces, extra_force=on_device(0.0), extra_stiffness=on_device(np.zeros(3)))
 
 
 def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:

@@ -43,6 +43,7 @@ from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.computed_hydrostatics import with_hydrostatics
 from jaxhydro.platform.computed_loads import tables_of
 from jaxhydro.platform.drag_laws import DragLaw, plain_drag, with_drag_laws
+from jaxhydro.quick_jit import on_device, quick_jit
 from jaxhydro.remarks import Remark, as_warnings
 from jaxhydro.scales import size_of
 from jaxhydro.waves.sea_state import SeaState
@@ -86,7 +87,7 @@ def build(platform: schema.Platform) -> Model:
     water = platform.water
     environment = Environment(water.density, water.depth, water.gravity)
     mass, centre, inertia = platform.rigid_body.combined()
-    body = RigidBody(jnp.asarray(mass), jnp.asarray(centre), jnp.asarray(inertia))
+    body = RigidBody(on_device(mass), on_device(centre), on_device(inertia))
     members = members_of(platform)
     _none_partly_wet(members, platform)
     size = size_of(mass, water.density)
@@ -295,7 +296,7 @@ def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: floa
         # volume that the members do not have is at the centre of buoyancy of those that they have
         extra = 0.0 if name == "C33" else force * own["centre_of_buoyancy"]
         stiffness.append(extra if buoyant is None else buoyant - own[name])
-    changed = (jnp.asarray(force), jnp.asarray(stiffness))
+    changed = (on_device(force), on_device(stiffness))
     return eqx.tree_at(lambda b: (b.extra_force, b.extra_stiffness), load, changed)
 
 
@@ -306,6 +307,6 @@ def _line_pull(load: AbstractLoad) -> float:
     return float((tension * towards[2]).sum())
 
 
-@eqx.filter_jit
+@quick_jit
 def _pull(load: MooringLines | CatenaryLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
     return load.tension(jnp.zeros(6), jnp.eye(3))

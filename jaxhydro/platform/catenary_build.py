@@ -2,7 +2,6 @@
 
 from typing import Protocol
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -11,6 +10,7 @@ from jaxhydro.errors import InputError, Problem
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines, segment_names
 from jaxhydro.loads.catenary.catenary_profile import reach
 from jaxhydro.platform.catenary_schema import Catenary
+from jaxhydro.quick_jit import quick_jit
 
 
 class WaterProperties(Protocol):
@@ -59,7 +59,7 @@ def catenary_lines(mooring: Catenary, water: WaterProperties) -> CatenaryLines:
 USUAL_STRAIN = 0.05  # of a line in the reference position: chain and wire break at 0.01 to 0.02, polyester near 0.12
 
 
-@eqx.filter_jit
+@quick_jit
 def _at_rest(load: CatenaryLines) -> tuple[Float[Array, " l"], Float[Array, " l"], Float[Array, " l"]]:
     """Horizontal tension (N), lowest point under the fairlead (m) and strain there, in the reference position."""
     tension, direction = load.tension(jnp.zeros(6), jnp.eye(3))

@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -14,6 +13,7 @@ from jaxhydro.interop.capytaine_waves import read_capytaine_hydrostatics
 from jaxhydro.interop.wamit_hydrostatics import FileHydrostatics, read_hydrostatics
 from jaxhydro.loads import Buoyancy, HydrostaticCoupling
 from jaxhydro.platform import schema as schema
+from jaxhydro.quick_jit import quick_jit
 from jaxhydro.remarks import Remark, as_warnings
 from jaxhydro.rotations import rotation
 
@@ -110,7 +110,7 @@ def hydrostatic_stiffness(load: Buoyancy, weight_density: float) -> np.ndarray:
     return -np.asarray(_slope(load, jnp.asarray(weight_density)))
 
 
-@eqx.filter_jit
+@quick_jit
 def _slope(load: Buoyancy, weight_density: Float[Array, ""]) -> Float[Array, "6 6"]:
     return jax.jacfwd(lambda q: load.force(q, rotation(q[3:]), weight_density))(jnp.zeros(6))
 

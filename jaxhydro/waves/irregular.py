@@ -15,6 +15,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
+from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.components import Components, components
 from jaxhydro.waves.continuation import continued
 from jaxhydro.waves.dispersion import wavenumber
@@ -98,7 +99,7 @@ def spectrum_components(
     first, last = harmonics(low, cutoff, period)
     step = 2 * math.pi / period
     omega = step * np.arange(first, last + 1)
-    density = np.broadcast_to(np.asarray(spectrum(jnp.asarray(omega)), float), omega.shape)
+    density = np.broadcast_to(np.asarray(spectrum(on_device(omega)), float), omega.shape)
     if not (np.all(np.isfinite(density)) and np.all(density >= 0)):
         raise ValueError("a spectrum is finite and not negative, found values that are not")
     if not density.any():

@@ -10,6 +10,7 @@ from jaxtyping import Array, Complex, Float
 
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
+from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.directional_transfer import AnyTransfer
 from jaxhydro.waves.excitation import AnyExcitation
@@ -204,18 +205,18 @@ class IrregularSea(AbstractSea):
         share = np.asarray(growth(clock.start + clock.step * np.arange(clock.steps + 1), self.ramp)) ** 2
         return Preparation(
             self,
-            jnp.asarray(found.table),
+            on_device(found.table),
             found.spacing,
-            jnp.asarray(found.wavenumber),
-            jnp.asarray(np.exp(-2 * found.wavenumber * depth)),
-            jnp.asarray(middle),
-            jnp.asarray(np.array([math.cos(heading), math.sin(heading)])),
+            on_device(found.wavenumber),
+            on_device(np.exp(-2 * found.wavenumber * depth)),
+            on_device(middle),
+            on_device(np.array([math.cos(heading), math.sin(heading)])),
             jnp.zeros(0) if cylinders is None else cylinders.radius,
             (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp),
             None if exciting is None else exciting.towards(heading),
             None if transfer is None else transfer.towards(heading),
-            jnp.asarray((np.asarray(waves.omega) / DRIFT_REFERENCE_FREQUENCY) ** 2),
-            jnp.asarray(share),
+            on_device((np.asarray(waves.omega) / DRIFT_REFERENCE_FREQUENCY) ** 2),
+            on_device(share),
             2 * math.pi / period,
             size,
             clock,
