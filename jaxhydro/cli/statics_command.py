@@ -1,6 +1,5 @@
 """Command `statics`: where a platform rests, by which forces, and what its moorings do."""
 
-import dataclasses
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,7 +11,7 @@ from jaxtyping import Array, Float
 from jaxhydro.cli.console import say, table
 from jaxhydro.cli.simulate_command import calibrated, print_remarks, print_rest
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.static_forces import LineState, forces_by_load, line_states, offset_curve
+from jaxhydro.dynamics.static_forces import LineState, forces_by_load, line_states, mooring_stiffness, offset_curve
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
@@ -92,13 +91,12 @@ def _print_lines(model: Model, position: Float[Array, "6"], when: str) -> None:
 
 def _print_stiffness(model: Model, position: Float[Array, "6"]) -> None:
     """Stiffness of all loads, and of the moorings alone."""
-    moorings = tuple(load for load in model.loads if isinstance(load, MooringLines | CatenaryLines))
     heads = ("", *DOFS)
-    parts = [("Stiffness at rest (MN/m, MN, MN m)", model)]
-    if moorings and len(moorings) < len(model.loads):
-        parts.append(("Stiffness of the mooring lines alone", dataclasses.replace(model, loads=moorings)))
-    for title, part in parts:
-        matrix = np.asarray(linearised(part, position)[1]) / 1e6
+    parts = {"Stiffness at rest (MN/m, MN, MN m)": linearised(model, position)[1]}
+    if any(isinstance(load, MooringLines | CatenaryLines) for load in model.loads):
+        parts["Stiffness of the mooring lines alone, earth axes"] = mooring_stiffness(model, position)
+    for title, stiffness in parts.items():
+        matrix = np.asarray(stiffness) / 1e6
         largest = np.sqrt(np.outer(abs(np.diag(matrix)), abs(np.diag(matrix))))
         rows = [
             (dof, *(f"{x:.5g}" if abs(x) > NO_FORCE * most else "0" for x, most in zip(row, scale)))

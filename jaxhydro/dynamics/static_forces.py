@@ -1,5 +1,6 @@
 """Static forces on a platform: by load, by mooring line, and over an offset."""
 
+import dataclasses
 import re
 from typing import NamedTuple
 
@@ -48,6 +49,26 @@ def _forces(model: Model, position: Float[Array, "6"]) -> Float[Array, "k 6"]:
         total = sum_of_loads((load,), now, (memory,)).force
         rows.append(jnp.concatenate([now.rotation @ total[:3], now.rotation @ total[3:]]))
     return jnp.stack(rows)
+
+
+@quick_jit
+def mooring_stiffness(model: Model, position: Float[Array, "6"]) -> Float[Array, "6 6"]:
+    """Stiffness matrix of the mooring lines alone, about a position.
+
+    The negative slope of their force and moment about the reference point, earth axes. With lines that pull, it is not
+    symmetric: a rotation moves the fairleads, and the moment is about a point that moves.
+
+    Args:
+        model: The platform.
+        position: Position (m, rad), (6,).
+
+    Returns:
+        Stiffness (N/m, N, N m), (6, 6).
+    """
+    lines = dataclasses.replace(
+        model, loads=tuple(load for load in model.loads if isinstance(load, MooringLines | CatenaryLines))
+    )
+    return -jax.jacfwd(lines.force_at_rest)(position)
 
 
 class LineState(NamedTuple):

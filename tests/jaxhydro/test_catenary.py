@@ -17,6 +17,7 @@ from numpy.testing import assert_allclose
 from ruamel.yaml import YAML
 
 import jaxhydro as jh
+from jaxhydro.dynamics.static_forces import mooring_stiffness
 from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import CatenaryLines
 from jaxhydro.loads.catenary.catenary_profile import Segments, reach
@@ -170,7 +171,7 @@ def test_volturnus_s_as_published() -> None:
     alone = moored(model)
     force = np.asarray(jax.jit(lambda q: alone.force_at_rest(q))(jnp.zeros(6)))
     assert force[2] == pytest.approx(-6061.98e3, rel=4e-3) and np.abs(np.delete(force, 2)).max() < 1e-3
-    found = -np.asarray(jax.jit(jax.jacfwd(lambda q: alone.force_at_rest(q)))(jnp.zeros(6)))
+    found = np.asarray(mooring_stiffness(model, jnp.zeros(6)))
     known = {(0, 0): 7.19e4, (2, 2): 6.07e4, (3, 3): 2.586e8, (4, 4): 2.586e8, (5, 5): 2.524e8, (0, 4): 1.144e6}
     for (i, j), value in known.items():
         assert found[i, j] == pytest.approx(value, rel=5e-3)

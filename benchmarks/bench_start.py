@@ -1,0 +1,99 @@
+"""Start-up of commands: programs compiled and seconds of CPU, on an empty compilation cache and on a full one.
+
+    python -m benchmarks.bench_start [--before FOLDER] [--rounds 3] [--out FILE]
+
+writes benchmarks/results-start.md. With `--before`, the same commands of another checkout take turns with these.
+"""
+
+import argparse
+import datetime
+import json
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from benchmarks.bench import processor, revision
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "benchmarks" / "results-start.md"
+COMMANDS = {
+    "statics of VolturnUS-S": ["statics", "volturnus-s-focal"],
+    "a decay of 300 s": ["simulate", "volturnus-s", "--release", "surge=5", "--duration", "300", "--out", "{out}"],
+    "a sea of 1200 s": ["simulate", "volturnus-s", "--hs", "3", "--tp", "9", "--duration", "1200", "--out", "{out}"],
+    "the same without figures": [
+        *("simulate", "volturnus-s", "--hs", "3", "--tp", "9", "--duration", "1200", "--out", "{out}", "--no-figures")
+    ],
+}
+SKIPPED_BEFORE = ("statics of VolturnUS-S",)  # a command that older sources lack
+HEADS = ("command", "cache", "programs", "tracing and lowering (s)", "compiling (s)", "CPU time (s)")
+
+
+def measured(words: list[str], sources: Path, cache: Path) -> dict[str, Any]:
+    """Counts and seconds of one run of a command, by `start_probe`."""
+    with tempfile.TemporaryDirectory() as folder:
+        given = [word.replace("{out}", str(Path(folder) / "out")) for word in words]
+        environment = os.environ | {"PYTHONPATH": str(sources), "JAX_COMPILATION_CACHE_DIR": str(cache)}
+        command = [sys.executable, str(ROOT / "benchmarks" / "start_probe.py"), *given]
+        done = subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout.strip().splitlines()[-1])
+
+
+def rows_of(name: str, words: list[str], sources: dict[str, Path], rounds: int) -> list[tuple[str, ...]]:
+    """Medians of a command, for each checkout, with an empty and with a full cache."""
+    found: dict[tuple[str, str], list[dict[str, Any]]] = {}
+    for _ in range(rounds):
+        for label, folder in sources.items():
+            cache = Path(tempfile.mkdtemp())
+            try:
+                for state in ("empty", "full"):
+                    found.setdefault((label, state), []).append(measured(words, folder, cache))
+            finally:
+                shutil.rmtree(cache)
+    rows = []
+    for (label, state), runs in found.items():
+        middle = {key: statistics.median(run[key] for run in runs) for key in runs[0]}
+        work = middle["trace_s"] + middle["lower_s"]
+        numbers = (f"{middle['programs']:.0f}", f"{work:.1f}", f"{middle['compile_s']:.1f}", f"{middle['cpu_s']:.1f}")
+        rows.append((f"{name}{label}", state, *numbers))
+    return rows
+
+
+def main() -> None:
+    """Measure all commands and write the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--before", type=Path, help="another checkout, which takes turns with this one")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--out", type=Path, default=RESULTS)
+    asked = parser.parse_args()
+    rows = []
+    for name, words in COMMANDS.items():
+        sources = {"": ROOT}
+        if asked.before is not None and name not in SKIPPED_BEFORE:
+            sources = {", before": asked.before, ", now": ROOT}
+        rows += rows_of(name, words, sources, asked.rounds)
+        print(*rows[-2 * len(sources) :], sep="\n", flush=True)
+    when = datetime.date.today().isoformat()
+    lines = [
+        "# Start-up of commands",
+        "",
+        f"`python -m benchmarks.bench_start`, {when}, medians of {asked.rounds} rounds. CPU time is that of the whole process,",
+        "imports included. *Full* is the compilation cache that the first run left. Programs that come from the cache are",
+        "counted: they are traced and lowered all the same.",
+        "",
+        f"Machine: {processor()}, {os.cpu_count()} cores, load average {os.getloadavg()[0]:.1f}; jaxhydro {revision()}.",
+        "",
+        f"| {' | '.join(HEADS)} |",
+        f"| :-- | :-- {'| --: ' * (len(HEADS) - 2)}|",
+        *(f"| {' | '.join(row)} |" for row in rows),
+        "",
+    ]
+    asked.out.write_text("\n".join(lines), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

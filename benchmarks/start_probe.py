@@ -1,0 +1,46 @@
+"""One command of `jaxhydro` with its compilations counted: JSON on the last line of standard output.
+
+    python benchmarks/start_probe.py simulate volturnus-s --release surge=5 --out /tmp/decay
+
+Run as a file, so that it measures the packages that PYTHONPATH names, of another checkout too.
+"""
+
+import collections
+import json
+import sys
+import time
+
+
+def main(words: list[str]) -> None:
+    """Run the command and print programs, their seconds by stage, and seconds of CPU of the whole process."""
+    import jax.monitoring
+
+    seconds: dict[str, float] = collections.defaultdict(float)
+    counts: dict[str, int] = collections.defaultdict(int)
+
+    def measured(name: str, duration: float, **_: object) -> None:
+        seconds[name.rsplit("/", 1)[-1]] += duration
+        counts[name.rsplit("/", 1)[-1]] += 1
+
+    jax.monitoring.register_event_duration_secs_listener(measured)
+    from jaxhydro.cli.app import app
+
+    imported = time.process_time()
+    try:
+        app(words, prog_name="jaxhydro")
+    except SystemExit as stop:
+        if stop.code:
+            raise
+    found = {
+        "programs": counts["backend_compile_duration"],
+        "trace_s": seconds["jaxpr_trace_duration"],
+        "lower_s": seconds["jaxpr_to_mlir_module_duration"],
+        "compile_s": seconds["backend_compile_duration"],
+        "import_cpu_s": imported,
+        "cpu_s": time.process_time(),
+    }
+    print(json.dumps(found))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
