@@ -15,4 +15,4 @@ def parameter_family(label: str, laws: Collection[str]) -> str:
     head, _, name = label.rpartition(".")
     if head == "added_mass" or head.startswith("guided_masses.") or name.startswith("Ca"):
         return "inertia"
-    return "damping" if head.endswith("damping") or name.startswith("Cd") else "restoring"
+    return "damping" if head.endswith("damping") or name == "damping" or name.startswith("Cd") else "restoring"

@@ -22,6 +22,7 @@ NOT_FREE_BY_DEFAULT = (
     "mooring.",
     "stiffness.",
     "guided_masses.",
+    "rotor.",
 )  # what a decay cannot tell from inertia is left alone unless asked for
 
 

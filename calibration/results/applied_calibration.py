@@ -25,6 +25,7 @@ CAMPAIGN_PARAMETERS = (  # first words of labels of what belongs to the installa
     "static_offset.",
     "mass_properties.",
     "guided_masses.",
+    "rotor.",
     "sensor_reference.",
     "sensor_lag.",
     "wave_gauge_position.",

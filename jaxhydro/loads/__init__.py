@@ -30,6 +30,7 @@ from jaxhydro.loads.mooring_nonlinearity import MooringNonlinearity
 from jaxhydro.loads.nonlinear_hydrostatics import NonlinearHydrostatics
 from jaxhydro.loads.quadratic_damping import QuadraticDamping
 from jaxhydro.loads.radiation_memory import RadiationMemory
+from jaxhydro.loads.rotor_thrust import RotorThrust
 from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.loads.stiffness import Stiffness
 from jaxhydro.loads.strip_inertia import StripInertia
@@ -51,6 +52,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "quadratic_damping": QuadraticDamping,
     "added_mass": AddedMass,
     "guided_masses": GuidedMasses,
+    "rotor_thrust": RotorThrust,
     "strip_inertia": StripInertia,
     "end_inertia": EndInertia,
     "morison_drag": MorisonDrag,

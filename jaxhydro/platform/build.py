@@ -30,6 +30,7 @@ from jaxhydro.loads import (
     MooringLines,
     MorisonDrag,
     QuadraticDamping,
+    RotorThrust,
     Stiffness,
     StripInertia,
     Weight,
@@ -106,6 +107,8 @@ def build(platform: schema.Platform) -> Model:
         if values := _entries(letter, matrix):
             loads.append(load(values))
     loads += _guided(platform)
+    if (rotor := platform.rotor) is not None:
+        loads.append(RotorThrust(on_device(rotor.hub), on_device(rotor.thrust), on_device(rotor.damping)))
     computed, said = tables_of(platform, declared)
     loads += computed
     if values := _entries("C", platform.stiffness.matrix()):

@@ -41,6 +41,14 @@ Matrix6 = Float[np.ndarray, "6 6"]
 Exponent = Annotated[float, Field(strict=True, ge=-3, le=3)]
 
 
+class Rotor(Schema):
+    """Thrust (N) of a rotor at its hub (m), and its slope over the wind speed (N s/m), in a steady wind along x."""
+
+    hub: Vector
+    thrust: Number = 0.0
+    damping: Number = 0.0
+
+
 class Water(Schema):
     """Density (kg/m³), depth (m) and gravity (m/s²)."""
 
@@ -357,6 +365,7 @@ class Platform(Consistent):
     water: Water
     rigid_body: RigidBody
     guided_masses: tuple[GuidedMass, ...] = ()
+    rotor: Rotor | None = None
     members: tuple[Member, ...] = ()
     coefficients: dict[Text, Coefficients] = {}
     linear_damping: LinearDamping = LinearDamping()

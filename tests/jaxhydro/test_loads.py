@@ -104,6 +104,7 @@ EVERYTHING = {
         {"name": "rod", "mass": 2e5, "point": [2.0, -3.0, 5.0], "moves": ["z"], "weight": True},
         {"name": "carriage", "mass": 5e5, "point": [4.0, 1.0, -6.0], "moves": ["x", "y"]},
     ],
+    "rotor": {"hub": [-5.0, 1.0, 150.0], "thrust": 2e6, "damping": 1.2e5},
     "stiffness": {"C11": 2e4, "C35": 4e5},
     "mooring": SPRINGS,
 }

@@ -16,7 +16,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
 from jaxhydro.interop.openfast.export_source import ExportSource, row
-from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, Stiffness
+from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, RotorThrust, Stiffness
 from jaxhydro.loads.matrix import assemble
 from jaxhydro.rotations import rotation
 
@@ -73,10 +73,26 @@ def exported_terms(source: ExportSource) -> ExportedTerms:
         elif isinstance(load, LinearDamping):
             terms.linear += np.asarray(assemble(load.entries))
             say("linear_damping", Treatment.TAKEN, "AddBLin, in body axes as here.")
+        elif isinstance(load, RotorThrust):
+            force, damping = _rotor(load)
+            terms.preload += force
+            terms.linear += damping
+            say(
+                "rotor",
+                Treatment.APPROXIMATED,
+                "AddF0, which does not turn with the platform, and AddBLin. OpenFAST has no wind here.",
+            )
         elif isinstance(load, QuadraticDamping):
             terms.quadratic += np.diag(np.diag(np.asarray(assemble(load.entries))))
             say("quadratic_damping", Treatment.TAKEN, "AddBQuad, in body axes as here.")
     return terms
+
+
+def _rotor(load: RotorThrust) -> tuple[Float[np.ndarray, "6"], Matrix6]:
+    """Force (N, N m) of a rotor at rest, upright, and its damping matrix."""
+    axis = np.array([1.0, 0.0, 0.0])
+    along = np.concatenate([axis, np.cross(np.asarray(load.hub), axis)])
+    return float(load.thrust) * along, float(load.damping) * np.outer(along, along)
 
 
 @eqx.filter_jit
