@@ -188,7 +188,8 @@ def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
         said = " ".join(str(error.problem or error.context).split()).removeprefix("but ")[:160]
         if isinstance(error, DuplicateKeyError):
             raise wrong(where, "each key once", said.removeprefix("found ")) from None
-        raise wrong(where, "valid YAML", f"a mistake in its syntax ({said})") from None
+        hint = "Indent by spaces: YAML takes no tabs." if "'\\t'" in said else ""
+        raise wrong(where, "valid YAML", f"a mistake in its syntax ({said})", hint) from None
     except ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
         raise wrong(f"line {line}", "text", f"the control character 0x{ord(text[error.position]):02x}") from None

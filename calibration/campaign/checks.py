@@ -226,7 +226,8 @@ class _Check:
             channel,
             time,
             message,
-            f"fewer than {MAX_DROPPED_SHARE:.0%} of the {len(self.series.time)} rows to be dropped",
+            f"fewer than {MAX_DROPPED_SHARE:.0%} of the {len(self.series.time)} rows to be dropped; "
+            "a `window` beside the gap, or values interpolated in the file",
         )
 
     def oscillation(self) -> Iterator[Finding]:

@@ -132,18 +132,22 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     manifest, folder = read_manifest(path)
     source = str(folder / "campaign.yaml" if Path(path).is_dir() else path)
     problems: list[Problem] = []
+    of_platform: InputError | None = None
     try:
         platform = load_platform(platform_source(manifest, folder))
     except InputError as error:
-        problems += [
-            Problem(f"{manifest.platform}: {p.where}".rstrip(": "), p.expected, p.found, p.hint) for p in error.problems
-        ]
+        of_platform = error
     else:
         problems += _of_other_waves(manifest, platform)
     try:
         series = read_series(manifest, folder)
     except InputError as error:
         problems += error.problems
+    if of_platform is not None and not problems:
+        raise of_platform
+    if of_platform is not None:
+        name = manifest.platform
+        problems += [Problem(f"{name}: {p.where}".rstrip(": "), p.expected, p.found, p.hint) for p in of_platform.problems]
     if problems:
         raise InputError(source, problems)
     findings = check_records(manifest, folder, series)

@@ -329,9 +329,9 @@ def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
     problems = []
     for i, test in enumerate(manifest.tests):
         if not _there(folder / test.file):
-            near = [item.name for item in folder.iterdir()]
-            hint = suggest(test.file, near)
-            problems.append(Problem(f"tests[{i}].file", f"a file in {folder}", f"no such file: {test.file!r}", hint))
+            near = [item.name for item in folder.iterdir() if item.is_file()]
+            found = f"{'a folder' if (folder / test.file).is_dir() else 'no such file'}: {test.file!r}"
+            problems.append(Problem(f"tests[{i}].file", f"a file in {folder}", found, suggest(test.file, near)))
     if _is_path(manifest.platform) and not _there(folder / manifest.platform):
         near = [item.name for item in folder.iterdir() if item.suffix in (".yaml", ".yml")]
         problems.append(

@@ -9,6 +9,7 @@ import pandas as pd
 
 SPIKE_DEVIATIONS = 8.0  # robust standard deviations
 SPIKE_MARGIN = 2.0  # the same, or steps of the last digit: a spike is that far beyond both neighbours
+MAX_SPIKE_SHARE = 0.02  # of the samples: what is more often is the sensor's grain
 MISSING_CODE_RATIO = 10.0  # times all else: what is no measurement
 
 
@@ -124,4 +125,8 @@ def spikes(values: np.ndarray, step: np.ndarray) -> np.ndarray:
     above = np.sign(off)
     outside = np.minimum(above * (middle - before), above * (middle - after))
     beyond = np.minimum(above * (middle - 2 * before + values[:-4]), above * (middle - 2 * after + values[4:]))
-    return np.flatnonzero(alone & (outside > SPIKE_MARGIN * tolerance) & (beyond > 0.5 * np.abs(off))) + 2
+    found = np.flatnonzero(alone & (outside > SPIKE_MARGIN * tolerance) & (beyond > 0.5 * np.abs(off)))
+    if len(found) > MAX_SPIKE_SHARE * len(values):  # the sensor's grain sticks out again and again, by the same
+        height = np.abs(off[found])
+        found = found[height > SPIKE_DEVIATIONS * np.median(height)]
+    return found + 2

@@ -1,5 +1,6 @@
 """Command `check`: what a campaign holds, and whether its records and its model fit together. Nothing is fitted."""
 
+import shlex
 from pathlib import Path
 
 from calibration.campaign.load_campaign import load_campaign
@@ -38,5 +39,5 @@ def check_campaign(path: Path, out: Path | None) -> None:
     doubts = list(check_tables.doubts(campaign, compared))
     say(check_tables.verdict(campaign, doubts))
     if doubts:
-        say(f"To look again: jaxhydro check {path}")
-    say(f"To fit it: jaxhydro calibrate {path} --out fit")
+        say(f"To look again: jaxhydro check {shlex.quote(str(path))}")
+    say(f"To fit it: jaxhydro calibrate {shlex.quote(str(path))} --out fit")

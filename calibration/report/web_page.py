@@ -40,10 +40,15 @@ def breakable(text: str) -> Markup:
     return Markup(re.sub(r"(?<=[A-Za-z])([._/])(?=[A-Za-z])", r"\1<wbr>", str(escape(text))))
 
 
+def with_code(text: str) -> Markup:
+    """Escaped text in which what stands between backticks is shown as code."""
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+
+
 PAGES = Environment(
     loader=PackageLoader("calibration.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
 )
-PAGES.filters.update(spans=spans, breakable=breakable, counted=counted, number=number)
+PAGES.filters.update(spans=spans, breakable=breakable, counted=counted, number=number, with_code=with_code)
 
 
 def render(template: str, **content: Any) -> str:

@@ -187,7 +187,7 @@ def statics(
     ] = None,
     offset: Annotated[
         list[str] | None,
-        typer.Option(help="Largest offset from rest of a curve of restoring forces, m or deg, as surge=20. May be repeated."),
+        typer.Option(help="Offset from rest up to which restoring forces are printed, m or deg, as surge=20. May be repeated."),
     ] = None,
     calibration: arguments.Calibrated = None,
 ) -> None:

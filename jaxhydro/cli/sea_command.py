@@ -16,9 +16,12 @@ from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, RequestedSea
 from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.sea_of_request import build_sea, impossible, outside
 from jaxhydro.dynamics.simulate import free_decay, largest_step
+from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.sea_limits import sea_limits
+
+MIN_NATURAL_PERIODS = 10  # that statistics of a motion are over
 
 
 def run(model: Model, job: Job, asked: RequestedSea) -> bool:
@@ -41,6 +44,7 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
         [*model.remarks, *wave_remarks(model), *outside(model, sea, about), *_limits(model, about, job.duration, asked.order)]
     )
     print_rest(model, job.platform)
+    print_remarks(_start_up(model, job.duration - transient))
     step = largest_step(model, asked.band(pace)[1]) if job.step is None else job.step
     about |= {"transient": transient, "step_at_most": step}
     table("Sea", ("Property", "Value"), _about(about), left=2)
@@ -74,6 +78,16 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     say(f"Significant wave height, 4 standard deviations, {span}: {height:.3g} m")
     say(f"Results are in {job.out}")
     return True
+
+
+def _start_up(model: Model, kept: float) -> list[Remark]:
+    """Warning where statistics are over few natural periods, so that the motion of the start is still in them."""
+    modes = natural_modes(model)
+    if not modes.period.size or kept >= MIN_NATURAL_PERIODS * modes.period[0]:
+        return []
+    said = f"statistics over {kept:.4g} s are {kept / modes.period[0]:.2g} natural periods of {modes.motion[0]}"
+    longer = MIN_NATURAL_PERIODS * modes.period[0]
+    return [Remark(f"{said}: the start and chance are in its numbers. Take {longer:.2g} s or more (--duration)", warning=True)]
 
 
 def _limits(model: Model, about: dict[str, Any], duration: float, order: int) -> list[Remark]:

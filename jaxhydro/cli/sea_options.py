@@ -22,6 +22,7 @@ OF_SEA = (*OF_SPECTRUM, *OF_DIRECTIONS, "--low", "--cutoff", "--order", "--trans
 OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
 UNITS = SI["length"]  # of a wave record
+MAX_DURATION = 5e5  # s: six days, as many samples as fit into memory at the usual --dt
 MAX_STEEPNESS = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
@@ -112,7 +113,9 @@ def duration(given: float | None, sea: RequestedSea | None) -> float:
     """Duration (s) given or chosen. Raises BadParameter for one that is longer than the record."""
     record = None if sea is None else sea.record
     if record is None:
-        return positive(given, "--duration") if given is not None else 600.0 if sea is None else 3600.0
+        if given is not None and positive(given, "--duration") > MAX_DURATION:
+            raise wrong("--duration", f"at most {MAX_DURATION:g} s expected, found {given:g}")
+        return given if given is not None else 600.0 if sea is None else 3600.0
     whole = float(record.times[-1] - record.times[0])
     if given is not None and positive(given, "--duration") > whole * (1 + 1e-9):
         raise wrong("--duration", f"at most the record's length, {whole:g} s, expected, found {given:g}")

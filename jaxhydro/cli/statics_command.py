@@ -103,6 +103,8 @@ def _print_stiffness(model: Model, position: Float[Array, "6"]) -> None:
             for dof, row, scale in zip(DOFS, matrix, largest)
         ]
         table(title, heads, rows)
+    if len(parts) > 1:
+        say("That of the lines is not symmetric where they pull: moments are about the reference point, which moves")
 
 
 def _print_curve(model: Model, dof: str, rest: float, most: float) -> None:
@@ -120,6 +122,6 @@ def _print_curve(model: Model, dof: str, rest: float, most: float) -> None:
         cells = [f"{float(for_people(dof, motion[dof])):.4g}", "0" if abs(force) < least else f"{force / 1e3:.5g}"]
         cells += [f"{float(for_people(other, motion[other]).round(3)) + 0.0:.3f}" for other in others]
         rows.append((*cells, *(f"{line.tension / 1e3:.5g}" for line in lines)))
-    table(f"Held in {dof}: the force that it takes, and the tensions", heads, rows)
+    table(f"Held in {dof}: the force that it takes{', and the tensions' if tensions[0] else ''}", heads, rows)
     if not np.isfinite(curve.force).all():
         say("nan: the platform or a line finds no balance there")

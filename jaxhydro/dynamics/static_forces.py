@@ -16,6 +16,7 @@ from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
 from jaxhydro.loads.mooring_lines import MooringLines
+from jaxhydro.loads.stiffness import Stiffness
 from jaxhydro.quick_jit import quick_jit
 from jaxhydro.rotations import rotation
 from jaxhydro.waves.sea import StillWater
@@ -35,7 +36,7 @@ def forces_by_load(model: Model, position: Float[Array, "6"]) -> dict[str, np.nd
     found: dict[str, np.ndarray] = {}
     for load, force in zip(model.loads, np.asarray(_forces(model, jnp.asarray(position)))):
         if force.any():
-            name = re.sub(r"(?<!^)(?=[A-Z])", " ", type(load).__name__).lower()
+            name = load.name if isinstance(load, Stiffness) else re.sub(r"(?<!^)(?=[A-Z])", " ", type(load).__name__).lower()
             found[name] = found.get(name, np.zeros(6)) + force
     return found
 

@@ -7,6 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+import scipy
 from jaxtyping import Array, Float
 
 from jaxhydro.choices import unknown
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 NEWTON_TOLERANCE = 1e-12  # of the position: the last step
 ITERATIONS = 64
+SAME_FREQUENCY = 1e-5  # of squared frequencies: modes closer than this are of one frequency
 MIN_COUPLING = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
 MOMENT_ARM = 10.0  # m times the platform's size: lever that turns a moment out of balance into a force
 MAX_HEAVE = 20.0  # the same: heave in which a platform does not float, if it is not less deep
@@ -263,6 +265,7 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     square, vectors = square.real[order], vectors.real[:, order]
     largest = np.abs(square).max()
     kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
+    vectors[:, kept] = _one_motion_each(square[kept], vectors[:, kept], widths(model))
     share = strain_energy(on_device(stiffness), on_device(vectors[:, kept]))
     motion = tuple(DOFS[int(i)] for i in np.argmax(np.asarray(share), axis=0))
     vectors = vectors * widths(model)[:, None]
@@ -270,6 +273,32 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     shape = shape / np.abs(shape).max(axis=1, keepdims=True)
     unstable = sorted({int(np.argmax(np.abs(vector))) for vector in vectors[:, falls].T})
     return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable), motion)
+
+
+def _one_motion_each(
+    square: Float[np.ndarray, " m"], vectors: Float[np.ndarray, "6 m"], scale: Float[np.ndarray, "6"]
+) -> Float[np.ndarray, "6 m"]:
+    """Mode shapes in which modes of one frequency are about one motion each.
+
+    Any mixture of such modes is a mode, such as surge and sway of a symmetric hull.
+
+    Args:
+        square: Squared frequencies, in order.
+        vectors: Mode shapes.
+        scale: Factors by which displacements and rotations are compared.
+    """
+    found = np.array(vectors)
+    begin = 0
+    for end in range(1, len(square) + 1):
+        if end < len(square) and square[end] - square[begin] < SAME_FREQUENCY * square[end]:
+            continue
+        if end - begin > 1:
+            alike = found[:, begin:end]
+            order = scipy.linalg.qr((alike * scale[:, None]).T, mode="r", pivoting=True)[1]
+            motions = np.sort(order[: end - begin])
+            found[:, begin:end] = alike @ np.linalg.inv(alike[motions])
+        begin = end
+    return found
 
 
 def _coupled(model: Model, moved: Collection[str]) -> set[str]:

@@ -8,6 +8,7 @@ import pytest
 from calibration.campaign.checks import check_records
 from calibration.campaign.digits import local_resolution, straight_piece
 from calibration.campaign.manifest import read_manifest
+from calibration.campaign.signals import spikes
 
 T = np.arange(0.0, 100.0, 0.05)
 SMOOTH = 3.4 * np.exp(-0.01 * T) * np.cos(2 * np.pi * T / 9.2 + 0.1)
@@ -69,6 +70,17 @@ def test_a_spike_and_a_clipped_channel_are_told(tmp_path, values, form):
     assert [
         "clipped" in message and "highest value, 2.5" in message for message in told(tmp_path, np.minimum(values, 2.5), form)
     ] == [True]
+
+
+def test_the_grain_of_a_sensor_is_no_spike():
+    """A still sensor whose reading flickers by one grain, written with digits beyond it; a real spike beside it is found."""
+    random = np.random.default_rng(3)
+    grain = 0.0873
+    values = np.round(grain * (random.random(1400) < 0.1) + 1e-6 * random.normal(size=1400), 5)
+    step = np.full(1400, 1e-5)
+    assert spikes(values, step).size == 0
+    values[700] += 12 * grain
+    assert spikes(values, step).tolist() == [700]
 
 
 def test_the_step_of_the_last_digit_is_that_at_the_value():

@@ -17,7 +17,7 @@ from jaxhydro.cli.simulate_command import print_rest
 from jaxhydro.dynamics.integrate import Grid, integrate
 from jaxhydro.dynamics.response import Response
 from jaxhydro.dynamics.solve6 import accelerate, inverse6
-from jaxhydro.dynamics.statics import stable_modes
+from jaxhydro.dynamics.statics import _one_motion_each, stable_modes
 from jaxhydro.integrators import runge_kutta
 from jaxhydro.rotations import angular_velocity, attitude_rates, rotation
 
@@ -390,6 +390,15 @@ def test_equilibrium_is_differentiable() -> None:
     assert float(jh.equilibrium(model)[0]) == pytest.approx(2.0, rel=1e-9)
     slope = jax.grad(lambda c: jh.equilibrium(model.with_values({"mooring.C11": c}))[0])(5e4)
     assert float(slope) == pytest.approx(-1e5 / 5e4**2, rel=1e-6)
+
+
+def test_modes_of_one_frequency_are_of_one_motion_each() -> None:
+    """Any mixture of them is a mode; a third mode stays as it is."""
+    surge, sway, pitch, roll, heave = np.eye(6)[0], np.eye(6)[1], np.eye(6)[4], np.eye(6)[3], np.eye(6)[2]
+    first, second = surge - 0.01 * pitch, sway + 0.01 * roll
+    mixed = np.stack([0.8 * first + 0.6 * second, -0.6 * first + 0.8 * second, heave], axis=1)
+    found = _one_motion_each(np.array([0.01, 0.01 * (1 + 1e-9), 0.2]), mixed, np.array([1, 1, 1, 50.0, 50.0, 50.0]))
+    assert_allclose(found, np.stack([first, second, heave], axis=1), atol=1e-12)
 
 
 def test_natural_modes() -> None:
