@@ -11,7 +11,7 @@ from typing import Any
 from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
 from jaxhydro.interop.mooring_system import NoCatenaries, catenary_section
 from jaxhydro.interop.openfast.added_terms import AddedTerms, matrix_entries, read_added_terms
-from jaxhydro.interop.openfast.ballast import ballast_parts
+from jaxhydro.interop.openfast.ballast import ballast_parts, drop_restoring
 from jaxhydro.interop.openfast.coefficient_tables import CoefficientTables
 from jaxhydro.interop.openfast.deck_files import DeckFiles, WaterColumn, module_items, open_deck, water_of
 from jaxhydro.interop.openfast.deck_sea import sea_items
@@ -83,6 +83,8 @@ def _hydrodyn(
         text = "Marine growth has no counterpart: neither its mass nor its thickness nor its coefficients."
         items.append(ConvertedItem(f"{file.name}: NMGDepths", Treatment.LEFT_OUT, text))
     terms = read_added_terms(file, mode == POTENTIAL_FLOW)
+    if not file.has("NBody"):  # OpenFAST 2.5 and older
+        drop_restoring(ballast, terms, water.gravity, file.name)
     items += terms.items
     flow = PotentialFlow()
     if mode == POTENTIAL_FLOW:

@@ -267,6 +267,31 @@ def test_versions_without_a_key(edited: Edited) -> None:
     assert "NewKey" in said(more, "hydrodyn.dat: other keys", Treatment.LEFT_OUT)
 
 
+def test_restoring_of_ballast_in_old_decks(edited: Edited) -> None:
+    """Without NBody, the weight of ballast does not move with the platform: AddCLin holds its restoring."""
+    parts = [part(edited(), name) for name in ("ballast 1", "ballast 2")]
+    restoring = -9.81 * sum(one["mass"] * one["centre_of_mass"][2] for one in parts)
+    diagonal = (" 0  0  0  0  0  0\n" * 2, f" 0 0 0 {2 * restoring:.9g} 0 0\n 0 0 0 0 {restoring:.9g} 0\n")
+    old = ("hydrodyn.dat", " 0  0  0  0  0  0\n" + diagonal[0], " 0  0  0  0  0  0\n" + diagonal[1])
+    whole = edited(*old).platform["stiffness"]
+    assert whole["C44"] == pytest.approx(2 * restoring) and whole["C55"] == pytest.approx(restoring)
+    less = edited(*old, "hydrodyn.dat", "1   NBody", "1   NoBody")
+    assert less.platform["stiffness"]["C44"] == pytest.approx(restoring) and "C55" not in less.platform["stiffness"]
+    assert "ballast's restoring" in said(less, "AddCLin", Treatment.APPROXIMATED)
+
+
+def test_file_names_of_another_case(edited: Edited) -> None:
+    """Decks that were written on Windows name files in another case."""
+    deck = edited("main.fst", '"hydrodyn.dat"', '"HydroDyn.DAT"')
+    assert deck.platform == edited().platform | {"name": deck.platform["name"]}
+
+
+def test_the_description_is_no_key(edited: Edited) -> None:
+    """The second line of a file may hold any words, such as names of keys."""
+    deck = edited("main.fst", "Made for the tests of jaxhydro", "Floating MHK turbine")
+    assert member(deck, "member11")["shape"] == "circ"
+
+
 # --- broken input
 
 
@@ -301,6 +326,7 @@ def test_versions_without_a_key(edited: Edited) -> None:
         ("hydrodyn.dat", "    2     11  12 ", "    2     11  19 ", "members of the table of members, found 19"),
         ("hydrodyn.dat", " 0  3.0E4  0  0  0  0\n", " 0  3.0E4  0\n", "row 2 of 6 of AddCLin, 6 numbers"),
         ("hydrodyn.dat", "0   RdtnMod", "1   RdtnMod", "zeros.1: expected WAMIT's table, which RdtnMod"),
+        ("hydrodyn.dat", "0   ExctnMod", "0   NewKey", "zeros.3: expected WAMIT's table, which ExctnMod"),
         ("hydrodyn.dat", "2        1     FALSE", "2        1     TRUE", ""),
         ("moordyn.dat", "1     chain     2", "1     rope      2", "a line type of the file (chain), found 'rope'"),
         ("moordyn.dat", "chain     2         1 ", "chain     2         9 ", "a point of the file (1, 2, 3, 4), found '9'"),

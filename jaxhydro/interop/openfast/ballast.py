@@ -8,15 +8,17 @@ References:
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
+from jaxhydro.interop.openfast.added_terms import AddedTerms
 from jaxhydro.interop.openfast.hull_tables import FillGroup, HydroDynMember
 from jaxhydro.interop.openfast.mass_parts import point_mass, spread_inertia
 
+MIN_RESIDUAL = 0.01  # of the ballast's restoring: what is left of AddCLin below it is rounding
 _ORDER = 5  # Gauss points: exact for polynomials of the ninth degree
 
 
@@ -56,6 +58,32 @@ def ballast_parts(
         meaning = f"Part `ballast {i}`, {total:.6g} kg, rigid: HydroDyn adds it to ElastoDyn's mass."
         items.append(ConvertedItem(where, Treatment.TAKEN, meaning))
     return parts, items
+
+
+def drop_restoring(ballast: Sequence[Mapping[str, Any]], terms: AddedTerms, gravity: float, source: str) -> None:
+    """Take the restoring of ballast out of AddCLin in a deck of OpenFAST 2.5 or older.
+
+    There the weight of ballast does not move with the platform, and AddCLin stands for its restoring in roll and pitch. A
+    rigid part has it by itself. A deck whose AddCLin has none is left as it is.
+
+    Args:
+        ballast: Entries of `rigid_body.parts`.
+        terms: HydroDyn's additional terms; the stiffness and the items are changed.
+        gravity: m/s2.
+        source: Name of HydroDyn's file.
+
+    References:
+        OpenFAST, issue 1022, comment of 2022-03-08.
+    """
+    restoring = -gravity * sum(part["mass"] * part["centre_of_mass"][2] for part in ballast)
+    stated = np.diag(terms.stiffness)[3:5]
+    if restoring <= 0.0 or not stated.all():
+        return
+    left = stated - restoring
+    left[np.abs(left) < MIN_RESIDUAL * restoring] = 0.0
+    terms.stiffness[[3, 4], [3, 4]] = left
+    meaning = f"C44 and C55 are less by {restoring:.6g} N m/rad: in this version they hold the ballast's restoring."
+    terms.items.append(ConvertedItem(f"{source}: AddCLin", Treatment.APPROXIMATED, meaning))
 
 
 def _filled(member: HydroDynMember, group: FillGroup) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

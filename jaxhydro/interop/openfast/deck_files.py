@@ -6,7 +6,7 @@ from pathlib import Path
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
 from jaxhydro.interop.openfast.keyed_file import KeyedFile
-from jaxhydro.interop.openfast.open_file import read_keyed_file
+from jaxhydro.interop.openfast.open_file import as_spelled, read_keyed_file
 
 MOORDYN = 3  # CompMooring
 NOT_FILES = ("", "none", "unused")
@@ -64,7 +64,7 @@ class DeckFiles:
 
 def beside(file: KeyedFile, key: str) -> Path:
     """Path of a file that another one names, relative to it."""
-    return file.path.parent / file.word(key).replace("\\", "/")
+    return as_spelled(file.path.parent / file.word(key).replace("\\", "/"))
 
 
 def open_deck(path: Path) -> DeckFiles:

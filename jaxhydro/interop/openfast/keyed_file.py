@@ -40,8 +40,11 @@ class KeyedFile:
     _used: set[int] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        """Find the key of every line."""
+        """Find the key of every line; the line under a file's heading is a description."""
+        described = bool(self.lines) and self.lines[0].lstrip().startswith("---")
         for i, line in enumerate(self.lines):
+            if described and i == 1:
+                continue
             words = self.words(i)
             if len(words) < 2 or line.lstrip().startswith(("---", "===", "!", "#")):
                 continue

@@ -6,6 +6,21 @@ from jaxhydro.errors import InputError, Problem, suggest_path
 from jaxhydro.interop.openfast.keyed_file import KeyedFile
 
 
+def as_spelled(path: Path) -> Path:
+    """Path of a file whose name may differ in upper and lower case, as in decks written on Windows.
+
+    Args:
+        path: The file, as a deck names it.
+
+    Returns:
+        The only file of that name in its folder, whatever its case; `path` itself where it exists or no such file does.
+    """
+    if path.exists() or not path.parent.is_dir():
+        return path
+    alike = [other for other in path.parent.iterdir() if other.name.lower() == path.name.lower()]
+    return alike[0] if len(alike) == 1 else path
+
+
 def read_keyed_file(path: Path, what: str) -> KeyedFile:
     """Read one of OpenFAST's files.
 

@@ -17,6 +17,7 @@ from jaxhydro.interop.conversion import ConvertedItem, Treatment
 from jaxhydro.interop.openfast.added_terms import matrix_entries
 from jaxhydro.interop.openfast.deck_files import beside
 from jaxhydro.interop.openfast.keyed_file import KeyedFile
+from jaxhydro.interop.openfast.open_file import as_spelled
 from jaxhydro.interop.openfast.table_row import to_number
 
 QTF = 12  # of DiffQTF and NewmanApp: WAMIT's .12d
@@ -55,7 +56,7 @@ def read_potential_flow(file: KeyedFile, density: float, strips: bool) -> Potent
         flow.items.append(ConvertedItem(f"{file.name}: {key}", treatment, meaning))
 
     def table(ending: str, key: str) -> Path:
-        path = root.with_name(root.name + ending)
+        path = as_spelled(root.with_name(root.name + ending))
         if not path.is_file():
             raise InputError(str(path), [Problem("", f"WAMIT's table, which {key} of {file.name} asks for", "no such file")])
         flow.files[path.name] = path
@@ -64,8 +65,9 @@ def read_potential_flow(file: KeyedFile, density: float, strips: bool) -> Potent
     def entry(path: Path, **more: Any) -> dict[str, Any]:
         return {"file": path.name} | ({"length": length} if length != 1.0 else {}) | more
 
-    modes = {key: file.whole(key, 0) for key in ("ExctnMod", "RdtnMod", "DiffQTF", "NewmanApp", "MnDrift", "SumQTF")}
-    hydrostatic = root.with_name(f"{root.name}.hst")
+    modes = {key: file.whole(key, 0) for key in ("RdtnMod", "DiffQTF", "NewmanApp", "MnDrift", "SumQTF")}
+    modes["ExctnMod"] = file.whole("ExctnMod", 1)  # FAST 8 has no such key and always takes .3
+    hydrostatic = as_spelled(root.with_name(f"{root.name}.hst"))
     stiff = hydrostatic.is_file() and bool(_numbers(hydrostatic)[:, 2:].any())
     used = volume != 0.0 or stiff or any(modes.values())
     if used:
@@ -84,7 +86,7 @@ def read_potential_flow(file: KeyedFile, density: float, strips: bool) -> Potent
             Treatment.LEFT_OUT,
             f"PtfmVol0 is 0, and {hydrostatic.name} is not there or holds zeros: buoyancy is that of members.",
         )
-    radiation = root.with_name(f"{root.name}.1")
+    radiation = as_spelled(root.with_name(f"{root.name}.1"))
     if modes["RdtnMod"]:
         flow.keys["radiation"] = entry(table(".1", "RdtnMod"))
         how = "" if modes["RdtnMod"] == 1 else " It is fitted anew, not from .ss."

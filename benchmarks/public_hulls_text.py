@@ -1,0 +1,198 @@
+"""Page of `benchmarks.public_hulls`, from its raw results."""
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from benchmarks.public_hulls_cases import CASES, MOTIONS, Case, Published
+
+GOAL = 0.02  # deviation that needs no reason
+HEAD = ("Hull", "Quantity", "Converted", "Published", "Deviation", "Source")
+
+
+class Comparison(NamedTuple):
+    """A value of a converted hull beside a published one.
+
+    Attributes:
+        quantity: Such as "heave period".
+        unit: Its unit.
+        ours: The converted hull's value.
+        published: The published value.
+        rounding: Half of the published value's last digit, relative.
+        source: Where it is published.
+    """
+
+    quantity: str
+    unit: str
+    ours: float
+    published: float
+    rounding: float
+    source: str
+
+    @property
+    def deviation(self) -> float:
+        """Relative deviation from the published value."""
+        return self.ours / self.published - 1
+
+    @property
+    def within(self) -> bool:
+        """Whether the deviation is within 2 % or the published rounding."""
+        return abs(self.deviation) <= max(GOAL, self.rounding)
+
+
+def compared(found: Mapping[str, Any], published: Published) -> list[Comparison]:
+    """Values of a converted hull beside those of one source."""
+    rows = [
+        ("mass", "t", found["mass"] / 1e3, published.mass and published.mass / 1e3),
+        ("displaced volume", "m³", found["volume"], published.volume),
+        (
+            "line tension",
+            "kN",
+            sum(found["tensions"]) / max(len(found["tensions"]), 1) / 1e3,
+            published.tension and published.tension / 1e3,
+        ),
+        ("vertical pull of lines", "kN", (found["pull"] or 0.0) / 1e3, published.pull and published.pull / 1e3),
+    ]
+    listed = [Comparison(name, unit, ours, value, 0.0, published.source) for name, unit, ours, value in rows if value and ours]
+    for dof, period in published.periods.items():
+        ours = found["periods"].get(dof, math.nan)
+        listed.append(Comparison(f"{dof} period", "s", ours, period, published.rounding * period, published.source))
+    return listed
+
+
+def percent(comparison: Comparison) -> str:
+    """A deviation as people read it."""
+    if not math.isfinite(comparison.deviation):
+        return "-"
+    shown = f"{100 * comparison.deviation:+.2f} %"
+    rounded = comparison.rounding >= 1e-3
+    return f"{shown} (rounding ± {100 * comparison.rounding:.1f} %)" if rounded else shown
+
+
+def figures(value: float) -> str:
+    """A number with four or more significant digits."""
+    return "-" if not math.isfinite(value) else f"{value:.0f}" if abs(value) >= 1000 else f"{value:.4g}"
+
+
+def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    """A table in Markdown."""
+    return "\n".join(f"| {' | '.join(row)} |" for row in (head, ("---",) * len(head), *rows))
+
+
+def title_of(case: Case) -> str:
+    """Hull and kind of its source."""
+    return f"{case.title}, {case.what}"
+
+
+def rest_words(rest: list[float] | None) -> str:
+    """Surge, heave and pitch at rest; None: not worked out."""
+    if rest is None:
+        return "-"
+    return f"{rest[0]:+.2f} m, {rest[2]:+.2f} m, {math.degrees(rest[4]):+.2f}°"
+
+
+def summary_row(case: Case, found: Mapping[str, Any]) -> tuple[str, ...]:
+    """Mass, volume, rest, lines, decay and sea of a hull."""
+    still, moving = found["statics"], found.get("motions")
+    tensions = [tension / 1e3 for tension in still["tensions"]]
+    sea = moving["sea"] if moving and case.waves else {}
+    return (
+        title_of(case),
+        f"{still['mass'] / 1e3:.1f}",
+        f"{still['volume']:.1f}",
+        rest_words(still["rest"]),
+        f"{min(tensions):.0f} to {max(tensions):.0f}" if tensions else "-",
+        f"{moving['decay']['period']:.2f}" if moving else "-",
+        *(f"{sea[dof]:.3f}" if sea else "-" for dof in ("surge", "heave", "pitch")),
+    )
+
+
+def period_row(case: Case, still: Mapping[str, Any]) -> tuple[str, ...]:
+    """Natural periods of a hull, and that of heave with the added mass of infinite frequency."""
+    listed, infinite = (still[key] for key in ("periods", "periods_infinite"))
+    last = figures(infinite.get("heave", math.nan)) if infinite != listed else "the same"
+    return (title_of(case), *(figures(listed.get(dof, math.nan)) for dof in MOTIONS), last)
+
+
+def read_row(case: Case, found: Mapping[str, Any]) -> tuple[str, ...]:
+    """What became of a source's items."""
+    counts = found["items"]
+    numbers = (str(counts.get(word, 0)) for word in ("taken", "approximated", "left out"))
+    return (title_of(case), f"`{case.source}`", *numbers, "; ".join(found["warnings"]) or "-")
+
+
+def text(results: Mapping[str, Any]) -> str:
+    """The page, from the raw results alone."""
+    done = {name: (CASES[name], found) for name, found in results.items() if "statics" in found}
+    rows, reasons, within, total = [], [], 0, 0
+    for case, found in done.values():
+        given: dict[str, list[str]] = {}
+        for published in case.published:
+            for one in compared(found["statics"], published):
+                finite = math.isfinite(one.deviation)
+                total, within = total + finite, within + (finite and one.within)
+                rows.append(
+                    (
+                        title_of(case),
+                        f"{one.quantity} ({one.unit})",
+                        figures(one.ours),
+                        figures(one.published),
+                        percent(one),
+                        one.source,
+                    )
+                )
+                if not finite or not one.within:
+                    reason = case.reasons.get(one.quantity, "not explained yet.")
+                    given.setdefault(reason, []).append(f"{one.quantity} {percent(one)}")
+        reasons += [f"- {title_of(case)}: {', '.join(what)}: {reason}" for reason, what in given.items()]
+    notes = [f"- {title_of(case)}: {note}" for case, _ in done.values() for note in case.notes]
+    periods = [period_row(case, found["statics"]) for case, found in done.values()]
+    parts = [
+        "# Public hulls and decks, converted",
+        f"{len(done)} public hulls and decks were converted by `jaxhydro convert`. "
+        f"{within} of {total} values agree with published ones, or with the source program's own, within 2 % or the rounding. "
+        "Each larger deviation has its reason below.",
+        "Made by `python -m benchmarks.public_hulls FOLDER`. The sources are copies of public repositories and are not kept "
+        "here. "
+        "Natural periods are undamped, at rest, with rigid towers. Where a source has radiation tables, each period has the "
+        "added mass of its own frequency.",
+        "## Statics, one decay, one sea",
+        table(
+            (
+                "Hull",
+                "Mass (t)",
+                "Displaced volume (m³)",
+                "At rest: surge, heave, pitch",
+                "Line tensions (kN)",
+                "Heave decay, period (s)",
+                "Surge in the sea (m)",
+                "Heave in the sea (m)",
+                "Pitch in the sea (°)",
+            ),
+            [summary_row(case, found) for case, found in done.values()],
+        ),
+        f"- Decays and seas were run for {sum('motions' in found for _, found in done.values())} of {len(done)} hulls.\n"
+        "- Decay: released 1 m above rest, in still water; the mean of up to six half cycles. The TLP is released from 0.1 m.\n"
+        "- Sea: JONSWAP, Hs 3 m, Tp 10 s, 300 s, first order, waves along x; standard deviations after the first 75 s.\n"
+        "- Tensions are those at the fairleads, at rest, of the lines with the least and the most.",
+        "## Natural periods (s)",
+        table(("Hull", *MOTIONS, "heave, added mass of infinite frequency"), periods),
+        "`natural_modes` and `jaxhydro statics` have the added mass of infinite frequency, as in the last column.",
+        "## Against published values",
+        table(HEAD, rows),
+        "## Reasons of deviations above 2 %",
+        "\n".join(reasons) or "- None.",
+        "## Notes",
+        "\n".join(notes) or "- None.",
+        "## What was read",
+        table(
+            ("Hull", "Source", "Taken", "Approximated", "Left out", "Warnings"),
+            [read_row(case, found) for case, found in done.values()],
+        ),
+    ]
+    faults = [f"- {title_of(CASES[name])}: {found['fault']}." for name, found in results.items() if "fault" in found]
+    parts += ["## What failed", "\n".join(faults)] if faults else []
+    absent = [title_of(case) for name, case in CASES.items() if name not in results]
+    if absent:
+        parts.append(f"Not run, as their sources or results are absent: {'; '.join(absent)}.")
+    return "\n\n".join(parts) + "\n"

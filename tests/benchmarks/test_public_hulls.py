@@ -1,0 +1,43 @@
+"""Public hulls: the page follows from the raw results, and sources that are absent are named."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from benchmarks.public_hulls import RAW, TEXT, main, missing, with_edits
+from benchmarks.public_hulls_cases import CASES, Published
+from benchmarks.public_hulls_text import compared, text
+
+STATICS = {"mass": 1010.0, "volume": 2.0, "tensions": [90.0, 110.0], "pull": 50.0, "periods": {"heave": 20.0, "pitch": 31.0}}
+
+
+def test_the_page_is_made_from_the_raw_results() -> None:
+    results = json.loads(RAW.read_text("utf-8"))
+    assert len(results) >= 10 and TEXT.read_text("utf-8") == text(results)
+
+
+def test_deviations_and_rounding() -> None:
+    """A period of 30 s that is published as 0.033 Hz is known to 1.5 %."""
+    published = Published("a report", {"heave": 20.2, "pitch": 30.0, "yaw": 80.0}, 1000.0, tension=100.0, rounding=1.5e-3)
+    found = {one.quantity: one for one in compared(STATICS, published)}
+    assert found["mass"].deviation == pytest.approx(0.01) and found["mass"].within
+    assert found["line tension"].deviation == pytest.approx(0.0)
+    assert found["pitch period"].rounding == pytest.approx(0.045) and found["pitch period"].within
+    assert "displaced volume" not in found and not found["yaw period"].within
+
+
+def test_values_of_a_deck_are_changed_in_a_copy(tmp_path: Path) -> None:
+    deck = tmp_path / "source"
+    deck.mkdir()
+    (deck / "main.fst").write_text("---\ntitle\n   1   CompMooring  - switch\n", encoding="utf-8")
+    copy = with_edits(deck / "main.fst", {"main.fst": {"CompMooring": "3", "ExctnMod": "0"}}, tmp_path)
+    lines = copy.read_text("utf-8").splitlines()
+    assert lines[2] == "3   CompMooring  - switch" and lines[-1].split()[:2] == ["0", "ExctnMod"]
+    assert "   1   CompMooring" in (deck / "main.fst").read_text("utf-8")
+
+
+def test_absent_sources_are_named(tmp_path: Path) -> None:
+    assert missing(tmp_path, CASES["iea-15"]) == CASES["iea-15"].source
+    with pytest.raises(SystemExit, match=r"nowhere: expected a folder, found none"):
+        main([str(tmp_path / "nowhere")])
