@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 NEWTON_TOLERANCE = 1e-12  # of the position: the last step
 ITERATIONS = 64
+MODE_ITERATIONS, MODE_TOLERANCE = 30, 1e-10  # of squared frequencies
 SAME_FREQUENCY = 1e-5  # of squared frequencies: modes closer than this are of one frequency
 MIN_COUPLING = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
 MOMENT_ARM = 10.0  # m times the platform's size: lever that turns a moment out of balance into a force
@@ -245,7 +246,8 @@ def widths(model: Model) -> np.ndarray:
 def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Modes:
     """Undamped natural modes about a position of rest.
 
-    Motions without restoring have no mode. In mode shapes, rotations are multiplied by `widths`, so that metres and radians
+    Motions without restoring have no mode. Where radiation has a memory, each mode has the added mass of its own frequency. In
+    mode shapes, rotations are multiplied by `widths`, so that metres and radians
     can be compared.
 
     Args:
@@ -264,6 +266,7 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     order = np.argsort(square.real)
     square, vectors = square.real[order], vectors.real[:, order]
     largest = np.abs(square).max()
+    _with_memories(model, mass, stiffness, square, vectors)
     kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
     vectors[:, kept] = _one_motion_each(square[kept], vectors[:, kept], widths(model))
     share = strain_energy(on_device(stiffness), on_device(vectors[:, kept]))
@@ -273,6 +276,45 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     shape = shape / np.abs(shape).max(axis=1, keepdims=True)
     unstable = sorted({int(np.argmax(np.abs(vector))) for vector in vectors[:, falls].T})
     return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable), motion)
+
+
+def _with_memories(
+    model: Model,
+    mass: Float[np.ndarray, "6 6"],
+    stiffness: Float[np.ndarray, "6 6"],
+    square: Float[np.ndarray, " m"],
+    vectors: Float[np.ndarray, "6 m"],
+) -> None:
+    """Change each mode to that with the added mass of its own frequency; nothing where no load has a linear memory.
+
+    A(omega) - A(infinity) is the imaginary part of the memory's frequency response over omega (Ogilvie 1964; see
+    `ComputedRadiation`).
+
+    Args:
+        model: The platform.
+        mass: Mass with the added mass of infinite frequency.
+        stiffness: Stiffness.
+        square: Squared frequencies, in order; those of modes are changed.
+        vectors: Mode shapes; those of modes are changed.
+    """
+    memories = [load for load in model.loads if load.retardation(1.0) is not None]
+    if not memories:
+        return
+    scale = widths(model)
+    for i in np.flatnonzero(square > 1e-10 * np.abs(square).max()):
+        for _ in range(MODE_ITERATIONS):
+            omega = float(np.sqrt(square[i]))
+            response = sum(np.asarray(load.retardation(omega)) for load in memories)
+            found, shapes = np.linalg.eig(np.linalg.solve(mass + response.imag / omega, stiffness))
+            along = scale * vectors[:, i]
+            scaled = scale[:, None] * shapes.real
+            same = int(np.argmax(np.abs(along @ scaled) / np.linalg.norm(scaled, axis=0)))
+            change = abs(found[same].real - square[i])
+            square[i], vectors[:, i] = found[same].real, shapes[:, same].real
+            if square[i] <= 0 or change < MODE_TOLERANCE * square[i]:
+                break
+    order = np.argsort(square)
+    square[:], vectors[:] = square[order], vectors[:, order]
 
 
 def _one_motion_each(

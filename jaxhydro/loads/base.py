@@ -3,7 +3,8 @@
 import abc
 from typing import Any, NamedTuple
 
-from jaxtyping import Array, Float
+import numpy as np
+from jaxtyping import Array, Complex, Float
 
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import AbstractEffect
@@ -55,6 +56,17 @@ class AbstractLoad(AbstractEffect):
         0 for a load without memory, or with a slow one only.
         """
         return 0.0
+
+    def retardation(self, omega: float) -> Complex[np.ndarray, "6 6"] | None:
+        """Frequency response of a linear memory, or None.
+
+        Args:
+            omega: Frequency (rad/s).
+
+        Returns:
+            K in F = -K v, along body axes (N s/m, N s, N m s): damping, and i omega times added mass.
+        """
+        return None
 
     def in_sea(self, state: SeaState) -> "AbstractLoad":
         """The load with the coefficients of a sea state; itself where it does not depend on the sea state."""

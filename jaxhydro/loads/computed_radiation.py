@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Complex, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
@@ -48,6 +48,10 @@ class ComputedRadiation(AbstractLoad):
 
     def covers(self) -> tuple[str, float, float] | None:
         return None if math.isinf(self.highest) else ("radiation", 0.0, self.highest)  # B(0) = 0 is known
+
+    def retardation(self, omega: float) -> Complex[np.ndarray, "6 6"]:
+        rates, drive, output = (np.asarray(x) for x in (self.rates, self.drive, self.output))
+        return float(self.share) * output @ np.linalg.solve(1j * omega * np.eye(len(rates)) - rates, drive)
 
     def act(self, now: Instant, memory: Any) -> Action:
         force = -self.share * (self.output @ memory)

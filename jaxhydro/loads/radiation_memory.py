@@ -3,8 +3,10 @@
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+import numpy as np
+from jaxtyping import Array, Complex, Float
 
+from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof
@@ -36,6 +38,12 @@ class RadiationMemory(AbstractLoadPerDof):
 
     def rest(self) -> Float[Array, "2 k"]:
         return jnp.zeros((2, self.entries(self.strength).shape[0]))
+
+    def retardation(self, omega: float) -> Complex[np.ndarray, "6 6"]:
+        strength, frequency, ratio = (np.asarray(self.entries(x)) for x in (self.strength, self.frequency, self.damping_ratio))
+        band = 2j * ratio * frequency * omega
+        basis = np.array([[dof == other for other in DOFS] for dof in self.dofs], float).reshape(-1, 6)
+        return np.diag((strength * band / (frequency**2 - omega**2 + band)) @ basis)
 
     def act(self, now: Instant, memory: Any) -> Action:
         strength, frequency, ratio = map(self.entries, (self.strength, self.frequency, self.damping_ratio))

@@ -93,7 +93,7 @@ def build(platform: schema.Platform) -> Model:
     _none_partly_wet(members, platform)
     size = size_of(mass, water.density)
     hull = Hull.of(members, size)
-    geometry = buoyancy(members, size)
+    geometry = buoyancy(() if platform.hydrostatics.linear else members, size)
     platform, coupling, remarks = with_hydrostatics(platform, geometry)
     declared = _declared_hydrostatics(geometry, platform, mass, float(centre[2]))
     loads: list[AbstractLoad] = [Weight(mass=body.mass, centre=body.centre), declared, *coupling]
@@ -285,7 +285,11 @@ def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: floa
     if volume is None:
         pull = sum(float(m.preload[2]) if isinstance(m, Stiffness) else _line_pull(m) for m in _mooring(platform))
         borne = mass + sum(guided.mass for guided in platform.guided_masses if guided.weight)
-        volume = own["displaced_volume"] if platform.members else borne / water.density - pull / weight_density
+        volume = (
+            own["displaced_volume"]
+            if platform.members and not declared.linear
+            else borne / water.density - pull / weight_density
+        )
     force = weight_density * (volume - own["displaced_volume"])
     weight_share = mass * water.gravity * centre  # of C44 and C55, with the sign of -m g z_G
     stiffness = []

@@ -15,6 +15,7 @@ from jaxhydro.errors import (
     Consistent,
     Count,
     Faults,
+    Flag,
     InputError,
     NonNegative,
     Number,
@@ -255,7 +256,7 @@ class Hydrostatics(FromFile):
     """Hydrostatics in place of those of members and mass (m³, N/m, N m/rad).
 
     `_buoyancy` values are without the weight. Values that are not given come from the `file`, where there is one. `weight`:
-    whether C44 and C55 of a .hst file include it.
+    whether C44 and C55 of a .hst file include it. `linear`: these values alone restore; the members displace nothing.
     """
 
     endings = {".hst": "wamit", ".out": "wamit", ".nc": "capytaine"}
@@ -269,6 +270,7 @@ class Hydrostatics(FromFile):
     C44_buoyancy: Number | None = None
     C55_buoyancy: Number | None = None
     weight: Literal["included", "excluded"] | None = None
+    linear: Flag = False
 
     @model_validator(mode="after")
     def _said_once(self) -> Self:
@@ -278,9 +280,15 @@ class Hydrostatics(FromFile):
         alone = [key for key in ("format", "length", "body", "weight") if getattr(self, key) is not None and not self.file]
         if alone:
             raise Faults(*(Problem(key, "a `file` with it", "none") for key in alone))
+        wanted = [("C33",), ("C44", "C44_buoyancy"), ("C55", "C55_buoyancy")]
+        if self.linear and not self.file and (lacking := [keys[0] for keys in wanted if not any(map(self._given, keys))]):
+            raise Faults(*(Problem(key, "a value, as the hydrostatics are `linear`", "none") for key in lacking))
         if self.weight is not None and Path(self.file).suffix.lower() == ".out":
             raise Faults(Problem("weight", "no weight, as an .out file says where its centre of mass is", shown(self.weight)))
         return self
+
+    def _given(self, key: str) -> bool:
+        return getattr(self, key) is not None
 
 
 class Radiation(FromFile):

@@ -13,6 +13,7 @@ import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
+from scipy.optimize import brentq
 from test_loads import BODY, COEFFICIENTS, COLUMN, build, model_of, only
 
 import jaxhydro as jh
@@ -20,12 +21,13 @@ from calibration.discovery.effects.candidates import requested_table_labels, wit
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import NoticeableScales
 from jaxhydro.dynamics.simulate import default_step, memory_step
+from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.errors import InputError
 from jaxhydro.interop.capytaine_radiation import read_capytaine
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 from jaxhydro.interop.retardation import Damping, Realisation, realise
 from jaxhydro.interop.wamit_radiation import read_wamit
-from jaxhydro.loads import ComputedRadiation, Stiffness
+from jaxhydro.loads import ComputedRadiation, RadiationMemory, Stiffness
 from jaxhydro.platform.schema import load_platform
 from jaxhydro.sweep.execute import _platform_text
 
@@ -169,6 +171,27 @@ def test_a_heave_decay_against_direct_convolution() -> None:
     expected = convolved(M, C[2], SHAPE[2, 2], 2.0, times)
     assert np.abs(expected[times > 100]).max() < 1.7
     assert_allclose(motion, expected, atol=0.008)
+
+
+def test_natural_periods_have_the_added_mass_of_their_own_frequency() -> None:
+    """Heave: w^2 (M + (A(w) - A(infinity))) = C, by the closed transfer; not that of infinite frequency."""
+    own = brentq(lambda w: w**2 * M + w * transfer(np.array(w)).imag * SHAPE[2, 2] - C[2], 0.2, 1.0)
+    modes = natural_modes(platform(), jnp.zeros(6))
+    assert modes.of("heave") == pytest.approx(2 * np.pi / own, rel=2e-4)
+    assert abs(modes.of("heave") / (2 * np.pi * math.sqrt(M / C[2])) - 1) > 0.003
+    without = natural_modes(platform(0.0), jnp.zeros(6))
+    assert without.of("heave") == pytest.approx(2 * np.pi * math.sqrt(M / C[2]), rel=1e-9)
+
+
+def test_retardation_of_the_memory_of_second_order() -> None:
+    """Damping and added mass of its docstring."""
+    b, w0, zeta, w = 3e5, 0.5, 0.3, 0.7
+    load = RadiationMemory({"heave": b}, {"heave": w0}, {"heave": zeta})
+    low = (w0**2 - w**2) ** 2 + (2 * zeta * w0 * w) ** 2
+    expected = b * (2 * zeta * w0 * w) ** 2 / low + 1j * w * 2 * zeta * w0 * b * (w0**2 - w**2) / low
+    found = load.retardation(w)
+    assert_allclose(found[2, 2], expected, rtol=1e-12)
+    assert np.abs(found).sum() == pytest.approx(abs(expected))
 
 
 def test_steps_follow_the_fastest_memory() -> None:

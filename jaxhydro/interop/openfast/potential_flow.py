@@ -74,8 +74,10 @@ def read_potential_flow(file: KeyedFile, density: float, strips: bool) -> Potent
         _one_body_at_origin(file)
     if volume or stiff:
         path = table(".hst", "PotMod")
-        flow.keys["hydrostatics"] = entry(path, weight="excluded") | ({"displaced_volume": volume} if volume else {})
-        say("PtfmVol0, .hst", Treatment.TAKEN, f"`hydrostatics` by {path.name}, without the weight, and the displaced volume.")
+        stated = {"displaced_volume": volume} if volume else {}
+        flow.keys["hydrostatics"] = entry(path, weight="excluded", linear=True) | stated
+        text = f"`hydrostatics` by {path.name}, linear and without the weight, and the displaced volume."
+        say("PtfmVol0, .hst", Treatment.TAKEN, text)
         _centre_of_buoyancy(file, say)
         if strips:
             text = "Hydrostatics are those of the table alone: the buoyancy of members with PropPot FALSE is not added."
