@@ -1,5 +1,6 @@
 """Motion, submerged geometry and flow of a platform at an instant, from its position and velocity."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -43,7 +44,7 @@ def instant(
     hull: Hull,
     conventions: Conventions,
     cylinders: Cylinders | None = None,
-    current: Float[Array, "3"] | None = None,
+    current: Callable[[Float[Array, " p"]], Float[Array, "3 p"] | None] = lambda _: None,
     replaced: Float[Array, ""] | None = None,
 ) -> Instant:
     """Motion, submerged geometry and flow at an instant.
@@ -57,7 +58,7 @@ def instant(
         hull: The hull.
         conventions: Form of the strip model.
         cylinders: Strips, then ends, that diffract the waves.
-        current: Steady current (m/s, earth axes).
+        current: Steady current (m/s, earth axes) at heights over still water (m), or None.
         replaced: Fraction of the strips' inertial wave load that other loads replace.
 
     Returns:
@@ -67,9 +68,10 @@ def instant(
     hull = hull if conventions.directions == "body" else hull.turned(matrix.T)
     submerged = _submerged(time, position, matrix, sea, hull, conventions)
     lines, still = _lines(velocity, submerged, hull, conventions)
-    if current is not None:
-        still = still + _along(current @ matrix, hull)
-    flow = sea.flow(time, _points(position, matrix, submerged, hull, conventions), cylinders)
+    points = _points(position, matrix, submerged, hull, conventions)
+    if (steady := current(points[2])) is not None:
+        still = still + _along(matrix.T @ steady, hull)
+    flow = sea.flow(time, points, cylinders)
     if flow is not None and replaced is not None:
         flow = flow.weakened(1 - replaced)
     strip_flow, end_flow = _flow_past(flow, still, submerged, matrix, hull)
@@ -145,9 +147,15 @@ def _lines(
     return Lines(away, inward), -(still + turning * away)
 
 
-def _along(vector: Float[Array, "3"], hull: Hull) -> Float[Array, " l"]:
-    """Components of a vector (body axes) along all lines, (l,)."""
-    return hull.join((vector[:, None, None] * hull.strips.directions).sum(axis=0), vector @ hull.ends.axis)
+def _along(field: Float[Array, "3 p"], hull: Hull) -> Float[Array, " l"]:
+    """Components along all lines, (l,), of a vector field (body axes) at `_points`, or of one vector everywhere (3, 1)."""
+    on_strips = on_ends = field
+    if field.shape[1] > 1:
+        n, whole = len(hull.strips.element), hull.ends_without_faces
+        of_ends = jnp.concatenate([jnp.arange(n, n + whole), jnp.array(hull.ends.strip, dtype=int)])
+        on_strips, on_ends = field[:, :n], field[:, of_ends]
+    across = (on_strips[:, None] * hull.strips.directions).sum(axis=0)
+    return hull.join(across, (on_ends * hull.ends.axis).sum(axis=0))
 
 
 def _points(

@@ -227,9 +227,9 @@ class Model(eqx.Module):
             sea = effect.through(sea)
         return sea
 
-    def current(self) -> Float[Array, "3"] | None:
-        """Sum of the steady currents (m/s, earth axes), or None."""
-        return optional_sum([effect.current() for effect in self.water])
+    def current(self, height: Float[Array, " p"]) -> Float[Array, "3 p"] | None:
+        """Sum of the steady currents (m/s, earth axes) at heights over still water (m), or None."""
+        return optional_sum([effect.current(height) for effect in self.water])
 
     @property
     def senses(self) -> bool:
@@ -265,7 +265,7 @@ class Model(eqx.Module):
             hull=self.hull,
             conventions=self.conventions,
             cylinders=self.cylinders,
-            current=self.current(),
+            current=self.current,
             replaced=optional_sum([load.replaces() for load in self.loads]),
         )
 

@@ -47,6 +47,7 @@ from jaxhydro.platform.drag_laws import DragLaw, plain_drag, with_drag_laws
 from jaxhydro.quick_jit import on_device, quick_jit
 from jaxhydro.remarks import Remark, as_warnings
 from jaxhydro.scales import size_of
+from jaxhydro.water import AbstractWaterEffect, CurrentProfile
 from jaxhydro.waves.sea_state import SeaState
 
 
@@ -124,7 +125,11 @@ def build(platform: schema.Platform) -> Model:
         platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal
     )
     all_remarks = (*_of_mooring(platform), *remarks, *said)
-    model = Model(environment, body, hull, tuple(loads), conventions=conventions, remarks=all_remarks)
+    flowing: tuple[AbstractWaterEffect, ...] = ()
+    if water.current is not None:
+        height, velocity = water.current.profile(water.depth)
+        flowing = (CurrentProfile(on_device(height), on_device(velocity)),)
+    model = Model(environment, body, hull, tuple(loads), flowing, conventions=conventions, remarks=all_remarks)
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model, platform)))
 

@@ -32,6 +32,7 @@ from jaxhydro.errors import (
 from jaxhydro.interop.wamit_tables import By
 from jaxhydro.platform.body import Coefficients, Inertia, Member, Part, RigidBody
 from jaxhydro.platform.catenary_schema import Catenary
+from jaxhydro.platform.current_schema import SteadyCurrent
 from jaxhydro.platform.guided_mass_schema import GuidedMass, twice_named
 from jaxhydro.platform.other_waves import OtherWaves, other_waves
 from jaxhydro.platform.shared_coefficients import owners, sharing_faults
@@ -51,11 +52,12 @@ class Rotor(Schema):
 
 
 class Water(Schema):
-    """Density (kg/m³), depth (m) and gravity (m/s²)."""
+    """Density (kg/m³), depth (m), gravity (m/s²), and a steady current."""
 
     density: Positive
     depth: Positive
     gravity: Positive = STANDARD_GRAVITY
+    current: SteadyCurrent | None = None
 
 
 def _key(letter: str, diagonal: bool = False) -> AfterValidator:

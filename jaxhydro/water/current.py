@@ -27,5 +27,5 @@ class Current(AbstractWaterEffect):
     y: Float[Array, ""] = parameter("m/s", "velocity of the current along earth's y", -MAX_SPEED, MAX_SPEED)
     source: ClassVar[str] = "DNV-RP-C205, section 6; Faltinsen 1990, chapter 6"
 
-    def current(self) -> Float[Array, "3"]:
-        return jnp.stack([self.x, self.y, jnp.zeros(())])
+    def current(self, height: Float[Array, " p"]) -> Float[Array, "3 1"]:
+        return jnp.stack([self.x, self.y, jnp.zeros(())])[:, None]

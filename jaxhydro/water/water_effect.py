@@ -17,8 +17,8 @@ class AbstractWaterEffect(AbstractEffect):
 
     comes_last: ClassVar[bool] = False
 
-    def current(self) -> Float[Array, "3"] | None:
-        """Steady current (m/s, earth axes) that is added to the water everywhere, or None."""
+    def current(self, height: Float[Array, " p"]) -> Float[Array, "3 p"] | None:
+        """Steady current (m/s, earth axes) at heights over still water (m), which is added to the water, or None."""
         return None
 
     def through(self, sea: AbstractSea) -> AbstractSea:

@@ -66,7 +66,7 @@ def sea_items(file: KeyedFile) -> Iterator[ConvertedItem]:
     if file.whole("ConstWaveMod", 0):
         yield item("ConstWaveMod", Treatment.LEFT_OUT, "Constrained waves have no counterpart.")
     if file.whole("CurrMod", 0):
-        text = "The platform file holds no current. A uniform one is an effect in Python (`jaxhydro.water.Current`)."
+        text = "`water.current` of the platform file takes one: not filled in from the deck."
         yield item("CurrMod", Treatment.LEFT_OUT, text)
     if file.has("MCFD") and file.number("MCFD"):
         yield item("MCFD", Treatment.APPROXIMATED, "Every member with MCF diffracts with its own diameter.")
