@@ -66,10 +66,11 @@ class EffectFits:
 
     def prior(self, chosen: Sequence[Candidate]) -> Prior:
         """Priors with some effects in the model, whose amplitudes have those of plausible sizes."""
-        width = self.setup.prior.width.copy()
+        mean, width = self.setup.prior.mean.copy(), self.setup.prior.width.copy()
         for one in chosen:
-            width[self.study.index(one.amplitudes)] = [self.setup.size_width(label) for label in one.amplitudes]
-        return Prior(self.setup.prior.mean, width)
+            for label, i in zip(one.amplitudes, self.study.index(one.amplitudes), strict=True):
+                mean[i], width[i] = self.setup.size_priors[label]
+        return Prior(mean, width)
 
     @cached_property
     def start(self) -> Point:

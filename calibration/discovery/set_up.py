@@ -51,6 +51,7 @@ class StudySetup(NamedTuple):
         prior: Priors of all directions.
         motions: The motions that the tests are about.
         plausible: Plausible sizes of the candidates' amplitudes by label.
+        size_priors: Means and standard deviations of their priors where they are in the model, along their directions.
     """
 
     study: Study
@@ -61,12 +62,7 @@ class StudySetup(NamedTuple):
     prior: Prior
     motions: tuple[str, ...]
     plausible: Mapping[str, PlausibleSize]
-
-    def size_width(self, label: str) -> float:
-        """Prior standard deviation of an amplitude along its direction."""
-        limits = self.study.size_limits
-        assert limits is not None
-        return float(np.abs(limits[self.study.names.index(label)]).max()) / PLAUSIBLE_DEVIATIONS
+    size_priors: Mapping[str, tuple[float, float]]
 
 
 def motions_of(campaign: Campaign) -> dict[str, float]:
@@ -191,19 +187,27 @@ def set_up_study(
     stated, seas = campaign.manifest.plausible, Seas.of(campaign.records, options.low, options.cutoff)
     plausible = plausible_sizes(declared, candidates, scales, seas, stated, source)
     reach = {label: (np.array([one.lower, one.upper]) - scaled[label].start) / units[label] for label, one in plausible.items()}
+    size_priors = {}
+    for label, found in plausible.items():
+        mean = 0.0 if found.expected is None else (found.expected - scaled[label].start) / units[label]
+        by_range = float(np.abs(reach[label]).max()) / PLAUSIBLE_DEVIATIONS
+        size_priors[label] = mean, by_range if found.deviation is None else found.deviation / units[label]
     for candidate in candidates:
         for label in candidate.amplitudes:
             if label not in names:
-                direction(label, {label: 1.0}, 0.0, float(np.abs(reach[label]).max()) / PLAUSIBLE_DEVIATIONS)
+                direction(label, {label: 1.0}, 0.0, size_priors[label][1])
         for label in candidate.shapes:
             shaped = isinstance(scaled[label].transform, LogInterval)
             direction(label, {label: 1.0}, 0.0, 0.7 if shaped else 3.0)
     limits = np.tile([-np.inf, np.inf], (len(names), 1))
     for label, span in reach.items():
         limits[names.index(label)] = np.sort(span)
+    if ends:
+        limits[names.index("covered_ends.share")] = 0.0, 1.0
     study = replace(study_of(model, space, names, np.array(rows), campaign, options, width), size_limits=limits)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
-    return StudySetup(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions), plausible)
+    named = (tuple(candidates), declared, tuple(labels), tuple(nuisances))
+    return StudySetup(study, *named, prior, tuple(motions), plausible, size_priors)
 
 
 def zero_terms(declared: Model, labels: Sequence[str]) -> set[str]:

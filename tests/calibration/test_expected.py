@@ -170,7 +170,7 @@ def test_coefficients_are_anchored_where_the_search_begins(seas: tuple[str, ...]
     )
     prior = Prior(np.array([0.0, 0.3, 0.0, 0.0]), np.ones(4))
     search = Search.__new__(Search)
-    search.study, search.setup = study, StudySetup(study, (), None, names[:2], names[2:3], prior, (), {})  # type: ignore[arg-type]
+    search.study, search.setup = study, StudySetup(study, (), None, names[:2], names[2:3], prior, (), {}, {})  # type: ignore[arg-type]
     search.anchor(np.array([1.0, 2.0, 3.0, 4.0]))
     assert_allclose(search.begun, [1.0, 2.0, 3.0, 4.0])
     assert_allclose(search.setup.prior.mean, [1.0 if seas else 0.0, 0.3, 0.0, 0.0])

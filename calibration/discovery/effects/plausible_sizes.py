@@ -22,19 +22,24 @@ STATED = "stated in campaign.yaml, plausible.{}."
 class PlausibleSize:
     """Range of the values that a parameter of an effect can plausibly have.
 
-    The neutral value is in it. The distance from there to the further end is about two standard deviations of a Gaussian prior.
+    The neutral value is in it. Unless another value is `expected`, the distance from there to the further end is about two
+    standard deviations of a Gaussian prior.
 
     Attributes:
         lower: Lowest value, in the SI unit of the label.
         upper: Highest value.
         source: Where the range comes from, in a sentence.
         stated: Whether the manifest states it.
+        expected: Value that is expected where the effect is there; None: the neutral value.
+        deviation: Standard deviation of the prior about it; None: by the range.
     """
 
     lower: float
     upper: float
     source: str
     stated: bool = False
+    expected: float | None = None
+    deviation: float | None = None
 
     def __contains__(self, value: float) -> bool:
         """Whether a value lies within the range."""
@@ -75,10 +80,7 @@ def plausible_sizes(
             if candidate.load is not None:  # one's own effect may begin anywhere
                 parameters[label] = parameters[label]._replace(neutral=float(candidate.load.values[label]))
             reaches[label] = _reach(case, candidate, label, parameters[label])
-    sizes = {
-        label: PlausibleSize(parameters[label].neutral + reach.below, parameters[label].neutral + reach.above, reach.source)
-        for label, reach in reaches.items()
-    }
+    sizes = {label: _size(parameters[label].neutral, reach) for label, reach in reaches.items()}
     problems: list[Problem] = []
     for key in sorted(stated, key=_closeness):
         found = _stated(key, stated[key], parameters, reaches)
@@ -87,6 +89,11 @@ def plausible_sizes(
     if problems:
         raise InputError(source, problems)
     return sizes
+
+
+def _size(neutral: float, reach: Reach) -> PlausibleSize:
+    expected = None if reach.deviation is None else neutral + reach.expected
+    return PlausibleSize(neutral + reach.below, neutral + reach.above, reach.source, False, expected, reach.deviation)
 
 
 def _reach(case: Case, candidate: Candidate, label: str, parameter: Parameter) -> Reach:

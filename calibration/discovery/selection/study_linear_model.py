@@ -29,7 +29,8 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
     low, high = (study.limits[directions] - now[:, None]).T
     base = np.arange(len(directions)) < len(fits.base)
     further = ~base & np.isin(directions, fits.base)  # of nearly known properties, beside the base's column
-    width = np.array([fits.setup.size_width(n) if more else w for n, more, w in zip(names, further, prior.width[directions])])
+    sizes = fits.setup.size_priors
+    width = np.array([sizes[n][1] if more else w for n, more, w in zip(names, further, prior.width[directions])])
     step = np.where(study.logarithmic[directions], MAX_COEFFICIENT_STEP, np.inf)
     low, high = np.maximum(low, -step), np.minimum(high, step)
     nuisance = base & np.isin(directions, study.index(fits.setup.nuisances))
@@ -40,6 +41,7 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
     low = np.where(signed, np.maximum(low, -now), low)
     amplitudes = {label for one in fits.setup.candidates for label in one.amplitudes}
     sized = ~base & ~further & np.isin(names, sorted(amplitudes))
+    expected = np.array([sizes[n][0] if one else 0.0 for n, one in zip(names, sized)])
     used = study.used[study.row_series]
     return LinearModel(
         slopes,
@@ -48,7 +50,7 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
         study.pool,
         study.share * used,
         (study.pooled * study.used[:, None]).ravel(),
-        np.where(further, 0.0, np.where(sized, -now, prior.mean[directions] - now)),
+        np.where(further, 0.0, np.where(sized, expected, prior.mean[directions]) - now),
         width,
         low,
         high,
