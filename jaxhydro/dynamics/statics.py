@@ -7,7 +7,6 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-import scipy
 from jaxtyping import Array, Float
 
 from jaxhydro.choices import unknown
@@ -336,9 +335,12 @@ def _one_motion_each(
             continue
         if end - begin > 1:
             alike = found[:, begin:end]
-            order = scipy.linalg.qr((alike * scale[:, None]).T, mode="r", pivoting=True)[1]
-            motions = np.sort(order[: end - begin])
-            found[:, begin:end] = alike @ np.linalg.inv(alike[motions])
+            rest, motions = alike * scale[:, None], []
+            for _ in range(end - begin):  # the motion that is largest in what others do not move
+                motions.append(int(np.argmax((rest**2).sum(axis=1))))
+                along = rest[motions[-1]] / np.linalg.norm(rest[motions[-1]])
+                rest = rest - np.outer(rest @ along, along)
+            found[:, begin:end] = alike @ np.linalg.inv(alike[sorted(motions)])
         begin = end
     return found
 

@@ -128,7 +128,7 @@ def build(platform: schema.Platform) -> Model:
     flowing: tuple[AbstractWaterEffect, ...] = ()
     if water.current is not None:
         height, velocity = water.current.profile(water.depth)
-        flowing = (CurrentProfile(on_device(height), on_device(velocity)),)
+        flowing = (CurrentProfile(on_device(height), on_device(velocity), on_device(1.0)),)
     model = Model(environment, body, hull, tuple(loads), flowing, conventions=conventions, remarks=all_remarks)
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model, platform)))

@@ -21,8 +21,8 @@ class CurrentProfile(AbstractWaterEffect):
     """
 
     height: Float[Array, " k"] = eqx.field(default_factory=lambda: jnp.zeros(1))  # m over still water, increasing
-    velocity: Float[Array, "2 k"] = eqx.field(default_factory=lambda: jnp.zeros((2, 1)))  # m/s, along earth's x and y
-    factor: Float[Array, ""] = parameter("-", "factor on the stated current", 0.0, 5.0, 1.0)
+    velocity: Float[Array, "2 k"] = eqx.field(default_factory=lambda: jnp.array([[1.0], [0.0]]))  # m/s, along earth's x and y
+    factor: Float[Array, ""] = parameter("-", "factor on the stated current", 0.0, 5.0)
     source: ClassVar[str] = "DNV-RP-C205, sections 4.1.4 and 6.2"
 
     def current(self, height: Float[Array, " p"]) -> Float[Array, "3 p"]:

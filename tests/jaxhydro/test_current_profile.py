@@ -29,7 +29,7 @@ def test_a_uniform_profile_is_the_uniform_current() -> None:
     """At any position and velocity, with columns, pontoons and ends, in still water and in a sea."""
     plain = only(build(COLUMN, PONTOON), MorisonDrag)
     uniform = plain.with_effect(Current(jnp.asarray(0.9), jnp.asarray(-1.2)))
-    profile = CurrentProfile(jnp.array([-100.0, 0.0]), jnp.array([[0.9, 0.9], [-1.2, -1.2]]))
+    profile = CurrentProfile(jnp.array([-100.0, 0.0]), jnp.array([[0.9, 0.9], [-1.2, -1.2]]), jnp.ones(()))
     for sea in (None, irregular()):
         expected = force(uniform, VELOCITY, POSITION, sea)
         assert_allclose(force(plain.with_effect(profile), VELOCITY, POSITION, sea), expected, rtol=1e-10, atol=1e-6)

@@ -63,7 +63,7 @@ from jaxhydro.loads.drag import (
 )
 from jaxhydro.parameters import AbstractEffect
 from jaxhydro.sensors import SENSOR_EFFECTS, SensorLag, SensorReference
-from jaxhydro.water import WATER_EFFECTS, Current, WaveGaugePosition, WaveReflection
+from jaxhydro.water import WATER_EFFECTS, Current, CurrentProfile, WaveGaugePosition, WaveReflection
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.quadratic_transfer import Transfer
 
@@ -198,7 +198,7 @@ def in_water(model: jh.Model) -> jh.Model:
         for load in model.loads
     ]
     drag = [MorisonDrag({key: COEFFICIENTS[f"Cd_{key[1]}"] for key in keys}, law) for keys, law in laws.items()]
-    others = (CoveredEnds, Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
+    others = (CoveredEnds, Current, CurrentProfile, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
     computed = (DriftTransfer(TRANSFER), ComputedExcitation(EXCITATION))
     drift = (
         CoupledDamping({"B15": 0.0}),
@@ -321,9 +321,9 @@ def test_a_water_effect_at_its_neutral_value(name: str) -> None:
     time = jnp.asarray(7.3)
     alone, same = SEA.flow(time, point), effect.through(SEA).flow(time, point)
     assert all(bool((a == b).all()) for a, b in zip(jax.tree.leaves(alone), jax.tree.leaves(same), strict=True))
-    assert effect.current() is None or bool((effect.current() == 0).all())
+    assert effect.current(point[2]) is None or bool((effect.current(point[2]) == 0).all())
     other = effect.at_values({label: 0.2 for label in effect.values})
-    changed, current = other.through(SEA).flow(time, point), other.current()
+    changed, current = other.through(SEA).flow(time, point), other.current(point[2])
     assert bool((changed.velocity != alone.velocity).any()) or float(jnp.abs(current).max()) == 0.2
 
 

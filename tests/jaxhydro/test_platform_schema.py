@@ -237,7 +237,7 @@ BROKEN: list[tuple[str, Any, str]] = [
     ("name", 2020, "name: expected text, found 2020 ... quotes"),
     ("name", "", "name: expected text that is not empty"),
     ("moring", {}, "moring: expected a known key ... Did you mean 'mooring'?"),
-    ("water", ..., "water: expected a mapping with the keys density, depth, gravity, found nothing"),
+    ("water", ..., "water: expected a mapping with the keys density, depth, gravity, current, found nothing"),
     ("water", None, "water: expected a mapping ... found nothing"),
     ("water.density", True, "water.density: expected a number > 0, found true"),
     ("water.density", "1025", "water.density: expected a number > 0, found '1025' ... without quotes"),
