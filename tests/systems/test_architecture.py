@@ -47,7 +47,7 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     "typer": {"jaxhydro.cli"},
     "rich": {"jaxhydro.cli.console"},
     "filelock": {"jaxhydro.sweep.store"},
-    "jinja2": {"calibration.report.web_page", "jaxhydro.interop.openfast.export_source"},
+    "jinja2": {"calibration.report.web_page", "jaxhydro.interop.openfast.export_text"},
 }
 NUMERICS = ("waves", "hull", "loads", "water", "sensors", "integrators", "dynamics")
 NOT_PURE = {"jaxhydro.dynamics.sea_of_request"}  # tells what is wrong with a sea that was asked for

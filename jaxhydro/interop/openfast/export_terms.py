@@ -15,7 +15,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
-from jaxhydro.interop.openfast.export_source import ExportSource, row
+from jaxhydro.interop.export_source import ExportSource
+from jaxhydro.interop.openfast.export_text import row
 from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, Stiffness
 from jaxhydro.loads.matrix import assemble
 from jaxhydro.rotations import rotation
