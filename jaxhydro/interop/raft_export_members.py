@@ -97,6 +97,10 @@ def _geometry(copies: _Copies, notes: RaftNotes) -> dict[str, Any]:
         entry["gamma"] = tidy(twist)
     if member.pierced:
         notes.pierced(name)
+    if member.column and _tapers_at_waterline(ends, stations, sizes):
+        notes.tapered_waterline(name)
+    if member.column and not member.circular and np.ptp(sizes, axis=0).any():
+        notes.tapered_box(name)
     return entry
 
 
@@ -148,6 +152,14 @@ def _above_waterplane(end: Float[np.ndarray, "3"], member: Member, notes: RaftNo
         return end
     notes.moved_end(member.name, OFF_WATERPLANE)
     return end + np.array([0.0, 0.0, OFF_WATERPLANE])
+
+
+def _tapers_at_waterline(
+    ends: Sequence[Float[np.ndarray, "3"]], stations: Float[np.ndarray, " n"], sizes: Float[np.ndarray, "n 2"]
+) -> bool:
+    heights = ends[0][2] + stations * (ends[1][2] - ends[0][2])
+    cut = (heights[:-1] <= 0.0) & (heights[1:] >= 0.0)
+    return bool((np.diff(sizes, axis=0)[cut] != 0.0).any())
 
 
 def _upright(member: Member) -> bool:

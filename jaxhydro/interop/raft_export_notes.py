@@ -49,6 +49,19 @@ class RaftNotes:
         )
         self.add(name, "members: buoyancy and loads", LEFT_OUT, text, warning=True)
 
+    def tapered_waterline(self, name: str) -> None:
+        """A column whose size changes where still water cuts it."""
+        text = (
+            "Its size changes where still water cuts it. RAFT takes the size there with the ends of the section exchanged, so "
+            "that its volume and waterplane are others."
+        )
+        self.add(name, "members: d", APPROXIMATED, text, warning=True)
+
+    def tapered_box(self, name: str) -> None:
+        """An upright box whose sides change along it."""
+        text = "RAFT subtracts the added mass of the sides of a box that narrows upwards; here it is added, as of circles."
+        self.add(name, "coefficients: Ca_z", APPROXIMATED, text)
+
     def moved_end(self, name: str, distance: float) -> None:
         """An end at z = 0."""
         self.add(name, "members: rA, rB", APPROXIMATED, f"RAFT refuses an end at z = 0: it is {1e3 * distance:g} mm higher.")

@@ -113,6 +113,7 @@ def test_what_raft_cannot_have_is_named_with_its_value() -> None:
     assert "9.80665" in said("catenary", "mooring.line_types", Treatment.APPROXIMATED)
     left = next(one for one in exported("volturnus-s").items if one.source == "mooring.stiffness")
     assert left.warning and "mooring.C11 = 7.19e+04 N/m" in left.meaning and "C66" not in left.meaning
+    assert "ends of the section exchanged" in said("catenary", "members: d, box", Treatment.APPROXIMATED)
     assert "no waterplane" in said("iti-barge", "members: buoyancy", Treatment.LEFT_OUT)
 
 
