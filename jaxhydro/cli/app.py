@@ -255,12 +255,13 @@ def export(
     out: Annotated[Path, typer.Option("--out", help="A new or an empty folder.")],
     calibration: arguments.Calibrated = None,
     deck: Annotated[
-        arguments.DeckFormat, typer.Option("--format", help="Program that the deck is written for.")
+        arguments.DeckFormat, typer.Option("--format", help="Program that the model is written for.")
     ] = arguments.DeckFormat.openfast,
 ) -> None:
     """Write a platform, tuned by a calibration, as another program's model, with a page of what became of each item.
 
-    For OpenFAST 5: main.fst, and files of ElastoDyn, HydroDyn, SeaState (still water) and, for catenaries, MoorDyn.
+    For OpenFAST 5: main.fst, and files of ElastoDyn, HydroDyn, SeaState (still water) and, for catenaries, MoorDyn. For RAFT:
+    design.yaml. For MoorDyn 2: lines.txt, the catenary lines alone.
     """
     options.check_platform(platform)
     from jaxhydro.cli.export_command import export_model

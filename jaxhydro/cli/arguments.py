@@ -66,8 +66,11 @@ EXPORTING = "\n\n".join(
         "[bold]Examples[/bold]",
         "jaxhydro export my-campaign/platform.yaml --out deck --calibration my-campaign-calibration",
         "jaxhydro export volturnus-s --out deck",
+        "jaxhydro export volturnus-s --out raft --format raft",
+        "jaxhydro export my-platform/platform.yaml --out lines --format moordyn",
         "[bold]What it writes[/bold]",
-        "main.fst and the files that it names, and export.md: what was taken, approximated and left out. "
+        "openfast: main.fst and the files that it names. raft: design.yaml. moordyn: lines.txt, of a platform with catenary "
+        "lines. Beside them export.md: what was taken, approximated and left out. "
         "A folder that is not empty is refused. Exit status: 0 done; 2 the input is wrong, and nothing was written.",
     )
 )
@@ -156,9 +159,11 @@ MULTISTART = "multistart"
 
 
 class DeckFormat(StrEnum):
-    """Program that a deck is written for."""
+    """Program that a model is written for."""
 
     openfast = "openfast"
+    raft = "raft"
+    moordyn = "moordyn"
 
 
 class Spectrum(StrEnum):

@@ -1,6 +1,7 @@
 """Command `export`: another program's model from a platform file."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -9,20 +10,61 @@ from jaxhydro.cli.console import say
 from jaxhydro.cli.convert_command import copy_whole, print_losses
 from jaxhydro.dynamics.model import Model
 from jaxhydro.files import check_new_folder, staged
+from jaxhydro.interop.export_source import ExportedModel, ExportSource, PotentialTable
 from jaxhydro.interop.openfast.export_deck import export_deck
-from jaxhydro.interop.openfast.export_source import ExportedDeck, ExportSource, PotentialTable
+from jaxhydro.interop.openfast.export_moordyn import ALONE, export_lines
 from jaxhydro.interop.platform_text import counted, items_page
+from jaxhydro.interop.raft_export_design import DESIGN, export_design
 from jaxhydro.platform.build import build, members_of
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.drag_laws import drag_laws_of
 from jaxhydro.platform.schema import Platform, load_platform
 
-PAGE, MAIN = "export.md", "main.fst"
-WRITERS = {DeckFormat.openfast: export_deck}
+PAGE = "export.md"
+
+
+@dataclass(frozen=True)
+class Writer:
+    """Writer of a format.
+
+    Attributes:
+        write: Makes the files of a platform.
+        title: What they are, for the title of the page.
+        steps: What to do with them, after the page was read; {folder} stands for the new folder.
+    """
+
+    write: Callable[[ExportSource], ExportedModel]
+    title: str
+    steps: tuple[str, ...]
+
+
+WRITERS = {
+    DeckFormat.openfast: Writer(
+        export_deck,
+        "an OpenFAST 5 deck",
+        (
+            "Run it: openfast {folder}/main.fst",
+            "To release it: set PtfmSurge to PtfmYaw in elastodyn.dat. For waves: set WaveMod in seastate.dat.",
+        ),
+    ),
+    DeckFormat.raft: Writer(
+        export_design,
+        "a RAFT design",
+        (
+            "Set the frequencies in `settings` and the seas in `cases`.",
+            f"Run it in Python: raft.Model(yaml.safe_load(open('{{folder}}/{DESIGN}'))).analyzeCases()",
+        ),
+    ),
+    DeckFormat.moordyn: Writer(
+        export_lines,
+        "a MoorDyn 2 file",
+        (f"Name {{folder}}/{ALONE} in the program that moves the fairleads.",),
+    ),
+}
 
 
 def export_model(platform: str, folder: Path, kind: DeckFormat, calibration: Path | None) -> None:
-    """Write a deck and export.md, and print a summary.
+    """Write another program's model and export.md, and print a summary.
 
     Args:
         platform: A platform file, or a built-in name.
@@ -31,7 +73,8 @@ def export_model(platform: str, folder: Path, kind: DeckFormat, calibration: Pat
         calibration: A calibration's folder or file, whose values are taken.
 
     Raises:
-        InputError: The folder is not empty, or the platform or the calibration cannot be used. Nothing is written.
+        InputError: The folder is not empty, the platform or the calibration cannot be used, or the format cannot have the
+            platform. Nothing is written.
     """
     check_new_folder(folder, "--out", "Name a new folder.")
     declared = load_platform(platform)
@@ -40,19 +83,20 @@ def export_model(platform: str, folder: Path, kind: DeckFormat, calibration: Pat
         from jaxhydro.cli.simulate_command import calibrated
 
         model = calibrated(model, platform, declared.name, calibration)
-    deck = WRITERS[kind](source_of(declared, model))
+    writer = WRITERS[kind]
+    exported = writer.write(source_of(declared, model))
     with staged(folder) as temporary:
-        for name, text in deck.texts.items():
+        for name, text in exported.texts.items():
             (temporary / name).write_text(text, encoding="utf-8")
-        for name, path in deck.files.items():
+        for name, path in exported.files.items():
             copy_whole(path, temporary / name)
-        page = items_page(f"{declared.name} as an OpenFAST 5 deck", deck.items, deck.files)
+        page = items_page(f"{declared.name} as {writer.title}", exported.items, exported.files)
         (temporary / PAGE).write_text(page, encoding="utf-8")
-    _print(deck, declared.name, folder)
+    _print(exported, writer, declared.name, folder)
 
 
 def source_of(declared: Platform, model: Model) -> ExportSource:
-    """What a deck is written from.
+    """What another program's model is written from.
 
     Args:
         declared: Contents of the platform file.
@@ -64,6 +108,7 @@ def source_of(declared: Platform, model: Model) -> ExportSource:
         declared.name,
         model,
         members_of(declared),
+        headings=[member.heading for member in declared.members],
         drag_laws={label: law.model_dump(exclude_none=True) for label, law in drag_laws_of(model).items()},
         line_diameters={kind: one.diameter for kind, one in lines.items() if one.diameter is not None},
         seabed_depth=mooring.seabed_depth(declared.water.depth) if isinstance(mooring, Catenary) else declared.water.depth,
@@ -83,9 +128,9 @@ def _tables(declared: Platform) -> Mapping[str, PotentialTable]:
     return found
 
 
-def _print(deck: ExportedDeck, name: str, folder: Path) -> None:
-    say(f"{folder} is made from {name}: {counted(deck.items)}.", "bold")
-    print_losses(deck.items)
+def _print(exported: ExportedModel, writer: Writer, name: str, folder: Path) -> None:
+    say(f"{folder} is made from {name}: {counted(exported.items)}.", "bold")
+    print_losses(exported.items)
     say(f"1. Read {folder / PAGE}: it says what became of each item.")
-    say(f"2. Run it: openfast {folder / MAIN}")
-    say("3. To release it: set PtfmSurge to PtfmYaw in elastodyn.dat. For waves: set WaveMod in seastate.dat.")
+    for number, step in enumerate(writer.steps, 2):
+        say(f"{number}. {step.format(folder=folder)}")

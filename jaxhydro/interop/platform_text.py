@@ -1,16 +1,11 @@
 """Text of a platform file, and of the page that says what became of a source, from a conversion."""
 
 from collections.abc import Mapping, Sequence
-from io import StringIO
 from pathlib import Path
-from typing import Any
-
-from ruamel.yaml import YAML
-from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
+from jaxhydro.interop.yaml_text import yaml_text
 
-WIDTH = 160  # characters of a line of YAML
 HEADINGS = {Treatment.TAKEN: "Taken", Treatment.APPROXIMATED: "Approximated", Treatment.LEFT_OUT: "Left out"}
 _HEAD = """\
 # Made by `jaxhydro convert` from {source}.
@@ -26,29 +21,7 @@ def platform_text(conversion: Conversion, source: str) -> str:
         conversion: The conversion.
         source: Name of what was converted, for the header.
     """
-    yaml, out = YAML(), StringIO()
-    yaml.width = WIDTH
-    yaml.dump(_laid_out(conversion.platform), out)
-    return _HEAD.format(source=" ".join(source.split())) + out.getvalue()
-
-
-def _laid_out(value: Any) -> Any:
-    """Mappings and lists, those without further ones in one line."""
-    if isinstance(value, dict):
-        mapping = CommentedMap({key: _laid_out(one) for key, one in value.items()})
-        if not any(isinstance(one, dict) or _nested(one) for one in value.values()):
-            mapping.fa.set_flow_style()
-        return mapping
-    if isinstance(value, list | tuple):
-        row = CommentedSeq([_laid_out(one) for one in value])
-        if not _nested(value):
-            row.fa.set_flow_style()
-        return row
-    return value
-
-
-def _nested(value: Any) -> bool:
-    return isinstance(value, list | tuple) and any(isinstance(one, dict | list | tuple) for one in value)
+    return _HEAD.format(source=" ".join(source.split())) + yaml_text(conversion.platform)
 
 
 def conversion_page(conversion: Conversion, source: str) -> str:

@@ -102,7 +102,16 @@ def _transverse(member: RaftMember, column: bool, approximated: Any) -> dict[str
                 key, f"RAFT's code takes the first two of {len(value)} numbers as two directions at every station; so here"
             )
         means = []
-        for values in member.directions(key):
+        along = member.directions(key)
+        if key == "Cd" and _refers_to_other_side(member):
+            ratio = member.sizes()[:, 0] / member.sizes()[:, 1]
+            along = along * np.stack([ratio, 1 / ratio])
+            approximated(
+                key,
+                "RAFT refers drag to the side along the flow, the platform file to the side across it: it is converted",
+                Treatment.TAKEN,
+            )
+        for values in along:
             mean, spread = _mean_over_wet_length(member, values, power)
             if spread:
                 approximated(key, f"one value for the whole member, the mean over its wet length: {mean:.4g}")
@@ -114,11 +123,13 @@ def _transverse(member: RaftMember, column: bool, approximated: Any) -> dict[str
         if abs(first - second) > EQUAL * max(first, second):
             approximated(key, f"a column has one {key}_t for both directions: the mean of {first:.4g} and {second:.4g}")
         found[f"{key}_t"] = 0.5 * (first + second)
-        if key == "Cd" and not member.circular and np.abs(np.diff(member.sizes(), axis=1)).max() > 0.0:
-            approximated(
-                key, "RAFT refers drag along a side to that side's length; here it is that of the side across the flow"
-            )
     return found
+
+
+def _refers_to_other_side(member: RaftMember) -> bool:
+    """Whether RAFT's drag refers to the other side than the platform file's: that of an upright box with unequal sides."""
+    upright = abs(member.rB[2] - member.rA[2]) > (1 - 1e-9) * member.length
+    return upright and not member.circular and bool(np.ptp(member.sizes(), axis=1).any())
 
 
 def _mean_over_wet_length(member: RaftMember, values: np.ndarray, power: int) -> tuple[float, bool]:
@@ -151,6 +162,13 @@ def _axial(member: RaftMember, approximated: Any) -> dict[str, float]:
             "CaEnd", f"Ca_z {found['Ca_z']:.4g}: RAFT refers it to a sphere on the mean side, here on the circle of equal area"
         )
     return found
+
+
+def end_volume_ratio(member: RaftMember) -> float:
+    """RAFT's reference volume of a column's wet ends and rings over the platform file's."""
+    rows = list(_faces(member))
+    wet = [row for row in rows if row[0] < 0.0] or rows
+    return sum(row[1] for row in wet) / sum(row[2] for row in wet)
 
 
 def _increasing(member: RaftMember, key: str) -> tuple[np.ndarray, np.ndarray]:

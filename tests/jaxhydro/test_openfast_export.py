@@ -10,8 +10,8 @@ from openfast_io.FAST_reader import InputReader_OpenFAST
 from jaxhydro.cli.export_command import source_of
 from jaxhydro.hull.strips import Member
 from jaxhydro.interop.conversion import Conversion, Treatment
+from jaxhydro.interop.export_source import ExportedModel
 from jaxhydro.interop.openfast.export_deck import export_deck
-from jaxhydro.interop.openfast.export_source import ExportedDeck
 from jaxhydro.interop.openfast_deck import read_openfast_deck
 from jaxhydro.loads import Buoyancy, EndInertia, QuadraticDamping
 from jaxhydro.loads.static_force import StaticForce
@@ -28,7 +28,7 @@ class RoundTrip(NamedTuple):
     """A platform, its deck, and the platform that the deck is read as."""
 
     before: Platform
-    deck: ExportedDeck
+    deck: ExportedModel
     folder: Path
     read: Conversion
     after: Platform
@@ -53,7 +53,7 @@ def trips(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RoundTrip]:
     return {name: round_trip(load_platform(name), folder / name) for name in BUILT_IN}
 
 
-def said(deck: ExportedDeck, source: str, treatment: Treatment) -> str:
+def said(deck: ExportedModel, source: str, treatment: Treatment) -> str:
     return " ".join(item.meaning for item in deck.items if source in item.source and item.treatment is treatment)
 
 

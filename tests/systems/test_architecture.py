@@ -32,7 +32,7 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
 EDGE = {  # third-party or built-in, and the only folders or modules that may use it
     "matplotlib": {"jaxhydro.plots", "jaxhydro.sweep.sweep_figures", "calibration.plots"},
     "PIL": {"jaxhydro.plots"},
-    "ruamel": {"jaxhydro.errors", "jaxhydro.interop.platform_text"},
+    "ruamel": {"jaxhydro.errors", "jaxhydro.interop.yaml_text"},
     "yaml": set(),
     "pandas": {
         *("jaxhydro.display", "calibration.display"),
@@ -47,7 +47,7 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     "typer": {"jaxhydro.cli"},
     "rich": {"jaxhydro.cli.console"},
     "filelock": {"jaxhydro.sweep.store"},
-    "jinja2": {"calibration.report.web_page", "jaxhydro.interop.openfast.export_source"},
+    "jinja2": {"calibration.report.web_page", "jaxhydro.interop.openfast.export_text"},
 }
 NUMERICS = ("waves", "hull", "loads", "water", "sensors", "integrators", "dynamics")
 NOT_PURE = {"jaxhydro.dynamics.sea_of_request"}  # tells what is wrong with a sea that was asked for

@@ -8,14 +8,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
+from jaxhydro.interop.export_effects import effects_left_out, plain_load
+from jaxhydro.interop.export_source import ExportedModel, ExportSource
 from jaxhydro.interop.openfast.export_elastodyn import elastodyn_files
 from jaxhydro.interop.openfast.export_flow import exported_flow
 from jaxhydro.interop.openfast.export_members import member_tables
-from jaxhydro.interop.openfast.export_moordyn import moordyn_file
-from jaxhydro.interop.openfast.export_source import ExportedDeck, ExportSource, digits, filled
+from jaxhydro.interop.openfast.export_moordyn import IN_OPENFAST, moordyn_file
 from jaxhydro.interop.openfast.export_terms import exported_terms
+from jaxhydro.interop.openfast.export_text import digits, filled
 from jaxhydro.loads import (
-    AbstractLoad,
     AddedMass,
     Buoyancy,
     CatenaryLines,
@@ -32,8 +33,6 @@ from jaxhydro.loads import (
     StripInertia,
     Weight,
 )
-from jaxhydro.loads.sea_state_law import SeaStateLaw
-from jaxhydro.parameters import AbstractEffect
 
 RIPPLE = 1e-6  # m, height of the waves of a deck with the keyword MCF: SeaState has none of it in still water
 GRID_MARGIN = 50.0  # m, of SeaState's grid beyond the hull, and below it
@@ -43,7 +42,7 @@ WRITTEN = (
 )
 
 
-def export_deck(source: ExportSource) -> ExportedDeck:
+def export_deck(source: ExportSource) -> ExportedModel:
     """Files of an OpenFAST 5 deck, and what became of each item of a platform.
 
     Args:
@@ -64,7 +63,7 @@ def export_deck(source: ExportSource) -> ExportedDeck:
     items = [_water(source), *items, *_members(source), *tables.notes.items("in the deck"), *flow.items, *terms.items]
     lines = [load for load in map(plain_load, model.loads) if isinstance(load, CatenaryLines)]
     for load in lines:
-        texts["moordyn.dat"], said = moordyn_file(source, load)
+        texts[IN_OPENFAST], said = moordyn_file(source, load, IN_OPENFAST)
         items += said
     texts["hydrodyn.dat"] = filled(
         "hydrodyn.dat",
@@ -88,13 +87,8 @@ def export_deck(source: ExportSource) -> ExportedDeck:
     )
     values = {key: digits(getattr(water, key)) for key in ("density", "depth", "gravity")}
     texts["main.fst"] = filled("main.fst", name=source.name, lines=bool(lines), **values)
-    items += [_sea(ripple), *_forms(source), *_left_out(source)]
-    return ExportedDeck(texts | flow.texts, tuple(items), flow.files)
-
-
-def plain_load(load: AbstractLoad) -> AbstractLoad:
-    """A load without its law over the sea state."""
-    return load.load if isinstance(load, SeaStateLaw) else load
+    items += [_sea(ripple), *_forms(source), *effects_left_out(source, WRITTEN)]
+    return ExportedModel(texts | flow.texts, tuple(items), flow.files)
 
 
 def _water(source: ExportSource) -> ConvertedItem:
@@ -145,24 +139,3 @@ def _forms(source: ExportSource) -> Iterator[ConvertedItem]:
     if any(isinstance(load, MorisonDrag) and not load.coupled for load in map(plain_load, source.model.loads)):
         text = "HydroDyn's drag is by the vector of the flow (FDMod 0), not by each component."
         yield ConvertedItem("drag_speed", Treatment.LEFT_OUT, text)
-
-
-def _left_out(source: ExportSource) -> Iterator[ConvertedItem]:
-    """Effects that OpenFAST has no counterpart for, with their values."""
-    model = source.model
-    for load in model.loads:
-        if isinstance(load, SeaStateLaw):
-            told = _told(load, [label for label in load.values if label not in load.load.values])
-            text = f"The deck has the coefficients of the reference sea; exponents are left out: {told}."
-            yield ConvertedItem("sea_state_laws", Treatment.LEFT_OUT, text)
-    for effect in (*map(plain_load, model.loads), *model.water, *model.sensors):
-        if isinstance(effect, WRITTEN):
-            continue
-        moved = [label for label, value in effect.values.items() if np.any(np.asarray(value) != effect.about(label).neutral)]
-        if moved or not effect.values:
-            text = f"The deck has no counterpart of {type(effect).__name__}: {_told(effect, moved) or 'no parameters'}."
-            yield ConvertedItem(effect.prefix, Treatment.LEFT_OUT, text)
-
-
-def _told(effect: AbstractEffect, labels: list[str]) -> str:
-    return ", ".join(f"{label} = {float(effect.values[label]):.4g} {effect.about(label).unit}" for label in labels)

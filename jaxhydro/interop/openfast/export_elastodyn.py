@@ -8,7 +8,8 @@ References:
 import numpy as np
 
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
-from jaxhydro.interop.openfast.export_source import ExportSource, digits, filled
+from jaxhydro.interop.export_source import ExportSource
+from jaxhydro.interop.openfast.export_text import digits, filled
 
 LINE_MASS = 1e-6  # kg/m of tower and blades: ElastoDyn stops at 0
 TOWER_LENGTH = 20.0  # m

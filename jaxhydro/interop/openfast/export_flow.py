@@ -21,7 +21,8 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import linearised
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
-from jaxhydro.interop.openfast.export_source import ExportSource, digits, row
+from jaxhydro.interop.export_source import ExportSource
+from jaxhydro.interop.openfast.export_text import digits, row
 from jaxhydro.interop.openfast.table_row import to_number
 from jaxhydro.loads import (
     AddedMass,

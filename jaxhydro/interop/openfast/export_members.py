@@ -16,8 +16,9 @@ import numpy as np
 
 from jaxhydro.hull.strips import COLUMN_SPACING, PONTOON_SPACING
 from jaxhydro.interop.conversion import Treatment
+from jaxhydro.interop.export_source import ExportSource
 from jaxhydro.interop.openfast.export_pieces import Piece, PieceJoint, joints_of, pieces_of
-from jaxhydro.interop.openfast.export_source import ExportSource, row
+from jaxhydro.interop.openfast.export_text import row
 from jaxhydro.interop.openfast.member_notes import MemberNotes
 
 BY_MEMBER = 3  # MCoefMod

@@ -1,4 +1,4 @@
-"""MoorDyn's file from catenary lines.
+"""MoorDyn's file from catenary lines, for OpenFAST and on its own.
 
 A line type's mass in air is that which weighs as much in water as here. Drag and added mass are those of the public deck of
 the IEA 15 MW platform: the catenaries have none, and MoorDyn's search for its initial state needs drag.
@@ -10,76 +10,96 @@ References:
 
 import math
 
-import numpy as np
-
+from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
-from jaxhydro.interop.openfast.export_source import ExportSource, digits, filled, row
+from jaxhydro.interop.export_effects import plain_load
+from jaxhydro.interop.export_source import ExportedModel, ExportSource
+from jaxhydro.interop.exported_lines import mooring_system_of
+from jaxhydro.interop.mooring_system import Attachment
+from jaxhydro.interop.openfast.export_text import digits, filled, row
 from jaxhydro.loads import CatenaryLines
-from jaxhydro.loads.catenary.catenary_lines import segment_names
 
 STEEL = 7850.0  # kg/m3, of lines without a declared diameter
 DAMPING = -1.0  # BA/-zeta: critical
 HYDRODYNAMICS = (0.0, 2.0, 0.82, 0.4, 0.27)  # EI, Cd, Ca, CdAx, CaAx
 SEGMENT, FEWEST = 20.0, 10  # m, and the least number, of a line's elements
+IN_OPENFAST, ALONE = "moordyn.dat", "lines.txt"
+WORDS = {Attachment.GROUND: "Fixed", Attachment.PLATFORM: "Vessel", Attachment.FREE: "Free"}
 
 
-def moordyn_file(source: ExportSource, load: CatenaryLines) -> tuple[str, list[ConvertedItem]]:
+def export_lines(source: ExportSource) -> ExportedModel:
+    """MoorDyn's file of a platform's lines alone, for MoorDyn 2 in other programs.
+
+    Args:
+        source: The platform.
+
+    Returns:
+        Text of lines.txt, and what became of the platform.
+
+    Raises:
+        InputError: The platform has no catenary lines.
+    """
+    load = next((load for load in map(plain_load, source.model.loads) if isinstance(load, CatenaryLines)), None)
+    if load is None:
+        hint = "MoorDyn's file has lines with weight; --format openfast and --format raft write other moorings."
+        found = "a platform without catenary lines"
+        raise InputError(source.name, [Problem("mooring", "lines of `kind: catenary`", found, hint)])
+    text, items = moordyn_file(source, load, ALONE)
+    water = source.model.environment
+    told = f"g, WtrDnsty and WtrDpth: {float(water.gravity):g} m/s², {float(water.density):g} kg/m³, {source.seabed_depth:g} m."
+    rest = "A MoorDyn file has the lines alone. MoorDyn gets the motion of the fairleads from the program that runs it."
+    around = [
+        ConvertedItem("water", Treatment.TAKEN, told),
+        ConvertedItem("all but the mooring", Treatment.LEFT_OUT, rest),
+    ]
+    return ExportedModel({ALONE: text}, (*items, *around))
+
+
+def moordyn_file(source: ExportSource, load: CatenaryLines, name: str) -> tuple[str, list[ConvertedItem]]:
     """Text of MoorDyn's file, and what became of the lines.
 
     Args:
         source: The platform.
         load: Its lines.
+        name: Name of the file. That of `IN_OPENFAST` has no gravity and density: OpenFAST states them.
     """
-    water = source.model.environment
-    density, gravity = float(water.density), float(water.gravity)
-    types, items = [], []
-    for kind, value in load.submerged_weight.items():
-        weight = float(value) / gravity  # kg/m in water
-        if (diameter := source.line_diameters.get(kind)) is None:
-            diameter = math.sqrt(4 * weight / (math.pi * (STEEL - density)))
-            text = (
-                f"The diameter of its volume, {diameter:.4g} m, is that of steel, as none is declared: MoorDyn needs its mass."
-            )
-            items.append(ConvertedItem(f"mooring.line_types.{kind}", Treatment.APPROXIMATED, text))
-        mass = weight + density * math.pi / 4 * float(diameter) ** 2
-        name = _word(kind, list(load.submerged_weight))
-        types.append(row(name, float(diameter), mass, float(load.axial_stiffness[kind]), DAMPING, *HYDRODYNAMICS))
-    anchors, fairleads = _anchors(load), np.asarray(load.fairlead).T
-    points, lines, tensions = list[str](), list[str](), list[int]()
-    for i, kinds in enumerate(load.types):
-        lengths = [float(load.unstretched_length[name]) for name in segment_names(i, len(kinds))]
-        along = np.concatenate([[0.0], np.cumsum(lengths)]) / sum(lengths)
-        for k, at in enumerate(along):
-            state = "Fixed" if k == 0 else "Vessel" if k == len(kinds) else "Free"
-            place = anchors[i] + at * (fairleads[i] - anchors[i])
-            points.append(
-                row(len(points) + 1, state, *(place if state == "Free" else (anchors[i], fairleads[i])[k > 0]), 0, 0, 0, 0)
-            )
-            if k:
-                name = _word(kinds[k - 1], list(load.submerged_weight))
-                count = max(FEWEST, math.ceil(lengths[k - 1] / SEGMENT))
-                lines.append(row(len(lines) + 1, name, len(points) - 1, len(points), lengths[k - 1], count, "-"))
-        tensions.append(len(lines))
+    system = mooring_system_of(source, load, STEEL)
+    kinds, places = list(system.line_types), list(system.points)
+    items = [
+        ConvertedItem(f"mooring.line_types.{kind}", Treatment.APPROXIMATED, _told_diameter(one.diameter))
+        for kind, one in system.line_types.items()
+        if kind not in source.line_diameters
+    ]
+    types = [
+        row(_word(kind, kinds), one.diameter, one.mass_per_length, one.axial_stiffness, DAMPING, *HYDRODYNAMICS)
+        for kind, one in system.line_types.items()
+    ]
+    points = [
+        row(number, WORDS[one.attachment], *one.position, 0, 0, 0, 0) for number, one in enumerate(system.points.values(), 1)
+    ]
+    lines, fairleads = list[str](), list[int]()
+    for number, line in enumerate(system.lines.values(), 1):
+        ends = [places.index(end) + 1 for end in line.ends]
+        count = max(FEWEST, math.ceil(line.length / SEGMENT))
+        lines.append(row(number, _word(line.line_type, kinds), *ends, line.length, count, "-"))
+        if system.points[line.ends[1]].attachment is Attachment.PLATFORM:
+            fairleads.append(number)
     text = (
-        "moordyn.dat: lines with weight and axial stiffness as here. MoorDyn adds their inertia, drag and damping, which the "
+        f"{name}: lines with weight and axial stiffness as here. MoorDyn adds their inertia, drag and damping, which the "
         "tuned model has not: Cd 2.0, Ca 0.82, CdAx 0.4 and CaAx 0.27 are those of the public IEA 15 MW deck."
     )
     items.append(ConvertedItem("mooring", Treatment.APPROXIMATED, text))
     if float(load.seabed_friction):
-        text = f"MoorDyn's friction is of another law: {float(load.seabed_friction):g} is not in the deck."
+        text = f"MoorDyn's friction is of another law: {float(load.seabed_friction):g} is not in the file."
         items.append(ConvertedItem("mooring.seabed.friction", Treatment.LEFT_OUT, text))
-    values = {"types": types, "points": points, "lines": lines, "fairleads": tensions}
-    return filled("moordyn.dat", name=source.name, depth=digits(source.seabed_depth), **values), items
+    water = source.model.environment
+    values = {"types": types, "points": points, "lines": lines, "fairleads": fairleads, "alone": name != IN_OPENFAST}
+    values |= {key: digits(getattr(water, key)) for key in ("gravity", "density")}
+    return filled("moordyn.dat", name=source.name, depth=digits(system.depth), **values), items
 
 
-def _anchors(load: CatenaryLines) -> np.ndarray:
-    """Anchors (m), shifted away from the platform as `anchor_shift` says, (n, 3)."""
-    anchors, fairleads = np.asarray(load.anchor, float).T.copy(), np.asarray(load.fairlead, float).T
-    for i in range(len(anchors)):
-        radial = (anchors[i] - fairleads[i])[:2]
-        if shift := float(load.anchor_shift[f"line{i + 1}"]):
-            anchors[i, :2] += shift * radial / np.linalg.norm(radial)
-    return anchors
+def _told_diameter(diameter: float) -> str:
+    return f"The diameter of its volume, {diameter:.4g} m, is that of steel, as none is declared: MoorDyn needs its mass."
 
 
 def _word(kind: str, kinds: list[str]) -> str:

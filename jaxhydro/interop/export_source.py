@@ -1,26 +1,13 @@
-"""What a deck is written from, and what is written."""
+"""What another program's model is written from, and what is written."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from jaxhydro.dynamics.model import Model
 from jaxhydro.hull.strips import Member
 from jaxhydro.interop.conversion import ConvertedItem
-from jaxhydro.interop.openfast.mass_parts import tidy
-
-TEMPLATES = Environment(
-    loader=PackageLoader("jaxhydro.interop.openfast"),
-    undefined=StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
-    keep_trailing_newline=True,
-    autoescape=False,
-)
 
 
 @dataclass(frozen=True)
@@ -46,12 +33,13 @@ class PotentialTable:
 
 @dataclass(frozen=True)
 class ExportSource:
-    """A platform as a deck is written from it.
+    """A platform as another program's model is written from it.
 
     Attributes:
         name: Its name.
         model: Its model, with calibrated values.
         members: Its members, each copied to its headings.
+        headings: Headings (deg) of the copies of each declared member, in the order of `members`.
         drag_laws: Drag laws other than plain drag, as in the platform file, by label such as `column.Cd_z`.
         line_diameters: Declared diameters of line types, m.
         seabed_depth: Of the seabed under the lines, m.
@@ -61,6 +49,7 @@ class ExportSource:
     name: str
     model: Model
     members: Sequence[Member]
+    headings: Sequence[tuple[float, ...]] = ()
     drag_laws: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     line_diameters: Mapping[str, float] = field(default_factory=dict)
     seabed_depth: float = 0.0
@@ -77,30 +66,15 @@ class ExportSource:
 
 
 @dataclass(frozen=True)
-class ExportedDeck:
-    """Files of a deck.
+class ExportedModel:
+    """Files of another program's model.
 
     Attributes:
         texts: Text of each file by its name.
         items: What became of each item of the platform.
-        files: Files to copy: name in the deck -> file.
+        files: Files to copy: name in the new folder -> file.
     """
 
     texts: Mapping[str, str]
     items: tuple[ConvertedItem, ...]
-    files: Mapping[str, Path]
-
-
-def filled(template: str, **values: Any) -> str:
-    """Text of a template of this package."""
-    return TEMPLATES.get_template(f"{template}.j2").render(**values)
-
-
-def digits(value: Any) -> str:
-    """A number with 12 digits, as Fortran reads it."""
-    return repr(tidy(float(value)))
-
-
-def row(*values: Any) -> str:
-    """Numbers and words of a row of a table; whole numbers stay whole."""
-    return " ".join(digits(value) if isinstance(value, float | np.floating) else str(value) for value in values)
+    files: Mapping[str, Path] = field(default_factory=dict)
