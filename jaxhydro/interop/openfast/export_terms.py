@@ -15,14 +15,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
-<<<<<<< HEAD
-from jaxhydro.interop.openfast.export_source import ExportSource, row
-from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, RotorThrust, Stiffness
-=======
 from jaxhydro.interop.export_source import ExportSource
 from jaxhydro.interop.openfast.export_text import row
-from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, Stiffness
->>>>>>> h3
+from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, RotorThrust, Stiffness
 from jaxhydro.loads.matrix import assemble
 from jaxhydro.rotations import rotation
 
