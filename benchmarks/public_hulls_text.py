@@ -177,7 +177,7 @@ def text(results: Mapping[str, Any]) -> str:
         "- Tensions are those at the fairleads, at rest, of the lines with the least and the most.",
         "## Natural periods (s)",
         table(("Hull", *MOTIONS, "heave, added mass of infinite frequency"), periods),
-        "`natural_modes` and `jaxhydro statics` have the added mass of infinite frequency, as in the last column.",
+        "`natural_modes` and `jaxhydro statics` have the added mass of each period's own frequency, too.",
         "## Against published values",
         table(HEAD, rows),
         "## Reasons of deviations above 2 %",

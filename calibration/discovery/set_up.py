@@ -202,8 +202,6 @@ def set_up_study(
     limits = np.tile([-np.inf, np.inf], (len(names), 1))
     for label, span in reach.items():
         limits[names.index(label)] = np.sort(span)
-    if ends:
-        limits[names.index("covered_ends.share")] = 0.0, 1.0
     study = replace(study_of(model, space, names, np.array(rows), campaign, options, width), size_limits=limits)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
     named = (tuple(candidates), declared, tuple(labels), tuple(nuisances))
