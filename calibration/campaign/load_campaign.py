@@ -143,7 +143,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
         series = read_series(manifest, folder)
     except InputError as error:
         problems += error.problems
-    if of_platform is not None and not problems:
+    if of_platform is not None and not problems and Path(platform_source(manifest, folder)).is_file():
         raise of_platform
     if of_platform is not None:
         name = manifest.platform

@@ -655,8 +655,11 @@ def test_a_campaign_that_is_not_there_or_not_yaml(tmp_path):
     ("csv", "words"),
     [
         (spoilt(t={(200, 400): T[200:] - 4.0}), "expected times that increase, found a step back from 19.9 s to 16 s"),
-        (spoilt(t={(100, 140): T[99]}), "fewer than 2% of the 400 rows to be dropped, found 40 times that"),
-        (spoilt(x={(50, 90): np.nan}), "fewer than 2% of the 400 rows to be dropped, found 40 values"),
+        (
+            spoilt(t={(100, 140): T[99]}),
+            "fewer than 2% of the 400 rows to be dropped; a `window` beside the gap, or values interpolated in the file, found 40 times",
+        ),
+        (spoilt(x={(50, 90): np.nan}), "interpolated in the file, found 40 values"),
         (spoilt(t={(0, 400): np.nan}), "channel time: expected times, found none"),
         (spoilt(x={(0, 400): 2.0}), "channel surge: expected a signal that moves, found one value throughout, 2"),
         (table(*(column[::10] for column in (T, SURGE, PITCH))), "expected 8 samples per cycle or more, found 5.9 samples"),
