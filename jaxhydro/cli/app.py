@@ -34,6 +34,14 @@ TRUTH = {  # what the records of the demo were made with: Table 1 of the paper t
 }
 
 
+PlatformArgument = Annotated[
+    str,
+    typer.Argument(
+        help="A platform file, or a built-in name (see `jaxhydro platforms`).", autocompletion=options.platforms_like
+    ),
+]
+
+
 class Guarded(TyperGroup):
     """Bad input is answered with a message and exit status 2, never with a traceback."""
 
@@ -175,12 +183,7 @@ def simulate(
 
 @app.command(epilog=arguments.STATICS)
 def statics(
-    platform: Annotated[
-        str,
-        typer.Argument(
-            help="A platform file, or a built-in name (see `jaxhydro platforms`).", autocompletion=options.platforms_like
-        ),
-    ],
+    platform: PlatformArgument,
     force: Annotated[
         list[str] | None,
         typer.Option(help="Steady force at the reference point, N or N m, as surge=1.5e6. May be repeated."),
@@ -246,12 +249,7 @@ def convert(
 
 @app.command(epilog=arguments.EXPORTING)
 def export(
-    platform: Annotated[
-        str,
-        typer.Argument(
-            help="A platform file, or a built-in name (see `jaxhydro platforms`).", autocompletion=options.platforms_like
-        ),
-    ],
+    platform: PlatformArgument,
     out: Annotated[Path, typer.Option("--out", help="A new or an empty folder.")],
     calibration: arguments.Calibrated = None,
     deck: Annotated[

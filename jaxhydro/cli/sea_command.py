@@ -16,7 +16,7 @@ from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, RequestedSea
 from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.sea_of_request import build_sea, impossible, outside
 from jaxhydro.dynamics.simulate import free_decay, largest_step
-from jaxhydro.dynamics.statics import natural_modes
+from jaxhydro.dynamics.statics import Modes
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.sea_limits import sea_limits
@@ -43,8 +43,8 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     print_remarks(
         [*model.remarks, *wave_remarks(model), *outside(model, sea, about), *_limits(model, about, job.duration, asked.order)]
     )
-    print_rest(model, job.platform)
-    print_remarks(_start_up(model, job.duration - transient))
+    modes = print_rest(model, job.platform)
+    print_remarks(_start_up(modes, job.duration - transient))
     step = largest_step(model, asked.band(pace)[1]) if job.step is None else job.step
     about |= {"transient": transient, "step_at_most": step}
     table("Sea", ("Property", "Value"), _about(about), left=2)
@@ -80,9 +80,8 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     return True
 
 
-def _start_up(model: Model, kept: float) -> list[Remark]:
+def _start_up(modes: Modes, kept: float) -> list[Remark]:
     """Warning where statistics are over few natural periods, so that the motion of the start is still in them."""
-    modes = natural_modes(model)
     if not modes.period.size or kept >= MIN_NATURAL_PERIODS * modes.period[0]:
         return []
     said = f"statistics over {kept:.4g} s are {kept / modes.period[0]:.2g} natural periods of {modes.motion[0]}"

@@ -17,7 +17,7 @@ from jaxhydro.cli.simulation_files import Motion, write_motion
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.rest_remarks import rest_remarks, wave_remarks
 from jaxhydro.dynamics.simulate import default_step, free_decay
-from jaxhydro.dynamics.statics import equilibrium, stable_modes
+from jaxhydro.dynamics.statics import Modes, equilibrium, stable_modes
 from jaxhydro.dynamics.table_ranges import regular_fault
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
@@ -161,21 +161,28 @@ def print_remarks(remarks: Iterable[Remark]) -> None:
             say(f"Note: {one.text}")
 
 
-def print_rest(model: Model, platform: str, moved: Collection[str] = DOFS) -> None:
-    """Print where the platform rests, and its natural periods. Raises EquilibriumError where it does not stay there once it is
-    `moved`."""
+def print_position(title: str, position: np.ndarray) -> None:
+    """Print a position (m, rad; 6), angles in degrees."""
+    shown = [(dof, float(np.round(for_people(dof, q), 4)) + 0.0) for dof, q in zip(DOFS, position)]  # no -0.0000
+    table(title, ("Motion", "Position"), [(f"{dof} ({unit_of(dof)})", f"{value:.4f}") for dof, value in shown])
+
+
+def print_rest(model: Model, platform: str, moved: Collection[str] = DOFS) -> Modes:
+    """Print where the platform rests, and its natural periods, which are returned.
+
+    Raises EquilibriumError where it does not stay there once it is `moved`.
+    """
     rest, modes = np.asarray(equilibrium(model)), stable_modes(model, moved)
     print_remarks(rest_remarks(model, jnp.asarray(rest)))
     if modes.unstable:
         complain(f"warning: the platform is unstable in {' and '.join(modes.unstable)}, which nothing moves here")
-    rest = rest.round(8) + 0.0  # no -0.0000
-    rows = [(f"{dof} ({unit_of(dof)})", f"{float(for_people(dof, q)):.4f}") for dof, q in zip(DOFS, rest)]
-    table(f"{platform}: at rest", ("Motion", "Position"), rows)
+    print_position(f"{platform}: at rest", rest)
     rows = []
     for period, shape in zip(modes.period, modes.shape):
         shares = sorted(((abs(share), dof) for share, dof in zip(shape, DOFS) if abs(share) > 0.2), reverse=True)
         rows.append((" and ".join(dof for _, dof in shares), f"{period:.2f} s"))
     table("Natural periods, undamped", ("Mode", "Period"), rows)
+    return modes
 
 
 def _print_motion(motion: Motion, wave: tuple[float, float] | None, ramp: float) -> None:

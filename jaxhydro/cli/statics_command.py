@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.cli.console import say, table
-from jaxhydro.cli.simulate_command import calibrated, print_remarks, print_rest
+from jaxhydro.cli.simulate_command import calibrated, print_position, print_remarks, print_rest
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.static_forces import LineState, forces_by_load, line_states, mooring_stiffness, offset_curve
 from jaxhydro.dynamics.statics import equilibrium, linearised
@@ -54,9 +54,7 @@ def print_statics(platform: str, force: Mapping[str, float], offset: Mapping[str
         pushed = model.with_effect(StaticForce(force=dict(force)))
         words = ", ".join(f"{dof} {value:g} {_force_unit(dof)}" for dof, value in force.items())
         position = equilibrium(pushed)
-        at = np.asarray(position).round(8) + 0.0
-        rows = [(f"{dof} ({unit_of(dof)})", f"{float(for_people(dof, q).round(4)) + 0.0:.4f}") for dof, q in zip(DOFS, at)]
-        table(f"Under a steady force: {words}", ("Motion", "Position"), rows)
+        print_position(f"Under a steady force: {words}", np.asarray(position))
         _print_lines(pushed, position, "under the steady force")
 
 

@@ -12,8 +12,8 @@ from jaxhydro.environment import DOFS
 from jaxhydro.loads.wave_drift import WaveDrift
 from jaxhydro.remarks import Remark
 
-MAX_HEAVE = 0.1  # of the draught: heave at rest from which the platform does not rest as it was drawn
-MAX_TILT = math.radians(3.0)
+MAX_REST_HEAVE = 0.1  # of the draught: heave at rest from which the platform does not rest as it was drawn
+MAX_REST_TILT = math.radians(3.0)
 
 
 def rest_remarks(model: Model, rest: Float[Array, "6"]) -> list[Remark]:
@@ -26,13 +26,13 @@ def rest_remarks(model: Model, rest: Float[Array, "6"]) -> list[Remark]:
     at = np.asarray(rest)
     lowest = float(np.min(np.asarray(model.hull.extremities())[2], initial=0.0))
     found = []
-    if lowest < 0 and abs(at[2]) > -MAX_HEAVE * lowest:
+    if lowest < 0 and abs(at[2]) > -MAX_REST_HEAVE * lowest:
         vertical = {name: float(force[2]) / 1e6 for name, force in forces_by_load(model, jnp.zeros(6)).items() if force[2]}
         sums = ", ".join(f"{name} {value:+.5g} MN" for name, value in vertical.items())
         where = f"{abs(at[2]):.3g} m {'above' if at[2] > 0 else 'below'} the reference position"
         found.append(Remark(f"the platform rests {where}. Vertical forces there: {sums}", warning=True))
     for i in (3, 4):
-        if abs(at[i]) > MAX_TILT:
+        if abs(at[i]) > MAX_REST_TILT:
             angle = math.degrees(at[i])
             text = f"the platform rests with a {DOFS[i]} of {angle:.3g} deg: check centre of mass and ballast"
             found.append(Remark(text, warning=True))

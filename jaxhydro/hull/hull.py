@@ -69,7 +69,7 @@ class Hull(eqx.Module):
         gauges = np.concatenate([elements.gauge, tips.gauge[:, :whole]], axis=1).round(9)
         place, which = np.unique(gauges, axis=1, return_inverse=True)
         gauge_of = tuple(map(int, which.reshape(-1)))
-        matrices = quick_jit(_matrices)(elements, strips, tips, powers)
+        matrices = _compiled_matrices(elements, strips, tips, powers)
         more = (on_device(float(size)), waterplane(members, size), lean)
         return cls(elements, strips, tips, cylinders, on_device(place), gauge_of, *matrices, *more)
 
@@ -173,6 +173,9 @@ def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tu
     away = jnp.concatenate([jnp.zeros(whole), (elements.length[home] * strips.fraction)[of]])
     tips = lever[:, lever.shape[1] - away.size :] + away * twist[:, twist.shape[1] - away.size :]
     return motion, inward, _moments(elements, strips, lever, twist, tips, powers)
+
+
+_compiled_matrices = quick_jit(_matrices)  # for all hulls, so that those of one form share a program
 
 
 def _centripetal(direction: Float[Array, "3 l"], point: Float[Array, "3 l"]) -> Float[Array, "6 l"]:

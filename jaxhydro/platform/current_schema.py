@@ -1,6 +1,5 @@
 """Schema of the steady current in a platform file, in SI, headings in degrees."""
 
-import math
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Annotated
@@ -61,10 +60,3 @@ class SteadyCurrent(Consistent):
     def _speed(self) -> float:
         assert self.speed is not None
         return self.speed
-
-    def words(self) -> str:
-        """The current in words."""
-        if self.levels:
-            return f"{len(self.levels)} levels, {self.levels[0].speed:g} m/s at the highest"
-        law = f", power law of exponent {self.exponent:g}" if self.exponent else ""
-        return f"{self.speed:g} m/s towards {math.fmod(self.heading, 360.0):g} deg{law}"

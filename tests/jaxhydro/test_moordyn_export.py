@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_openfast_export import with_catenaries
 
 from jaxhydro.cli.export_command import source_of
 from jaxhydro.errors import InputError
@@ -14,17 +15,11 @@ from jaxhydro.interop.openfast.moordyn_file import read_mooring_system
 from jaxhydro.interop.openfast.open_file import read_keyed_file
 from jaxhydro.platform.build import build
 from jaxhydro.platform.catenary_schema import Catenary
-from jaxhydro.platform.schema import Platform, load_platform
+from jaxhydro.platform.schema import load_platform
 
 
 def test_lines_come_back(tmp_path: Path) -> None:
-    raw = load_platform("volturnus-s").model_dump(exclude_unset=True)
-    chain = {"axial_stiffness": 3.27e9, "mass_per_length": 685.0, "diameter": 0.333}
-    line = {"anchor": [837.6, 0.0, -180.0], "fairlead": [58.0, 0.0, -14.0], "heading": [60.0, 180.0, 300.0]}
-    line["segments"] = [{"type": "chain", "length": 600.0}, {"type": "rope", "length": 240.0}]
-    types = {"chain": chain, "rope": {"axial_stiffness": 1.0e9, "submerged_weight": 900.0}}
-    raw["mooring"] = {"kind": "catenary", "line_types": types, "lines": [line], "seabed": {"depth": 180.0}}
-    platform = Platform.model_validate(raw)
+    platform = with_catenaries()
     mine, water = platform.mooring, platform.water
     assert isinstance(mine, Catenary)
     found = export_lines(source_of(platform, build(platform)))

@@ -194,15 +194,20 @@ def test_effects_and_laws_are_named_and_quadratic_damping_is_taken(tmp_path: Pat
     assert column.drag_z.model_dump(exclude_none=True) == laws["drag_z"]
 
 
-def test_catenaries_come_back(tmp_path: Path) -> None:
-    """Lines of two segments, copied to headings, over a seabed of their own depth."""
+def with_catenaries() -> Platform:
+    """VolturnUS-S with lines of two segments, copied to headings, over a seabed of their own depth."""
     raw = load_platform("volturnus-s").model_dump(exclude_unset=True)
     chain = {"axial_stiffness": 3.27e9, "mass_per_length": 685.0, "diameter": 0.333}
     line = {"anchor": [837.6, 0.0, -180.0], "fairlead": [58.0, 0.0, -14.0], "heading": [60.0, 180.0, 300.0]}
     line["segments"] = [{"type": "chain", "length": 600.0}, {"type": "rope", "length": 240.0}]
     types = {"chain": chain, "rope": {"axial_stiffness": 1.0e9, "submerged_weight": 900.0}}
     raw["mooring"] = {"kind": "catenary", "line_types": types, "lines": [line], "seabed": {"depth": 180.0}}
-    before = Platform.model_validate(raw)
+    return Platform.model_validate(raw)
+
+
+def test_catenaries_come_back(tmp_path: Path) -> None:
+    """Lines of two segments, copied to headings, over a seabed of their own depth."""
+    before = with_catenaries()
     trip = round_trip(before, tmp_path / "deck")
     mine, read = before.mooring, trip.after.mooring
     assert isinstance(mine, Catenary) and isinstance(read, Catenary)

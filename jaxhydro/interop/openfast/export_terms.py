@@ -6,20 +6,19 @@ References:
     OpenFAST v5.0.0 (2895884), HydroDyn.f90, HydroDyn_CalcOutput (F_PtfmAdd).
 """
 
+import dataclasses
 from dataclasses import dataclass, field
 
-import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
+from jaxhydro.dynamics.static_forces import forces_by_load, mooring_stiffness
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
 from jaxhydro.interop.export_source import ExportSource
 from jaxhydro.interop.openfast.export_text import row
 from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, RotorThrust, Stiffness
 from jaxhydro.loads.matrix import assemble
-from jaxhydro.rotations import rotation
 
 Matrix6 = Float[np.ndarray, "6 6"]
 
@@ -66,7 +65,9 @@ def exported_terms(source: ExportSource) -> ExportedTerms:
             terms.preload += np.asarray(load.preload)
             say(load.name, Treatment.TAKEN, "AddCLin, and the preload as AddF0, in earth axes as here.")
         elif isinstance(load, MooringLines):
-            force, stiffness = (np.asarray(one) for one in _linear(load))
+            lines, upright = dataclasses.replace(source.model, loads=(load,)), jnp.zeros(6)
+            force = sum(forces_by_load(lines, upright).values(), np.zeros(6))
+            stiffness = np.asarray(mooring_stiffness(lines, upright))
             terms.preload += force
             terms.stiffness += np.where(np.abs(stiffness) > 1e-12 * np.abs(stiffness).max(), stiffness, 0.0)
             text = "AddF0 and AddCLin: the pull of the straight springs and its slope at the reference position."
@@ -94,16 +95,3 @@ def _rotor(load: RotorThrust) -> tuple[Float[np.ndarray, "6"], Matrix6]:
     axis = np.array([1.0, 0.0, 0.0])
     along = np.concatenate([axis, np.cross(np.asarray(load.hub), axis)])
     return float(load.thrust) * along, float(load.damping) * np.outer(along, along)
-
-
-@eqx.filter_jit
-def _linear(load: MooringLines) -> tuple[Float[Array, "6"], Float[Array, "6 6"]]:
-    """Force (N, N m) of straight springs in earth axes at the reference position, and its stiffness."""
-
-    def force(q: Float[Array, "6"]) -> Float[Array, "6"]:
-        turn = rotation(q[3:])
-        tension, towards = load.tension(q, turn)
-        pull, arm = turn @ (tension * towards), turn @ load.fairlead
-        return jnp.concatenate([pull, jnp.cross(arm, pull, axis=0)]).sum(axis=1)
-
-    return force(jnp.zeros(6)), -jax.jacfwd(force)(jnp.zeros(6))
