@@ -46,6 +46,7 @@ def instant(
     cylinders: Cylinders | None = None,
     current: Callable[[Float[Array, " p"]], Float[Array, "3 p"] | None] = lambda _: None,
     replaced: Float[Array, ""] | None = None,
+    fast: Float[Array, "2"] | None = None,
 ) -> Instant:
     """Motion, submerged geometry and flow at an instant.
 
@@ -60,11 +61,13 @@ def instant(
         cylinders: Strips, then ends, that diffract the waves.
         current: Steady current (m/s, earth axes) at heights over still water (m), or None.
         replaced: Fraction of the strips' inertial wave load that other loads replace.
+        fast: Part of the horizontal displacement (m) that those other loads do not follow.
 
     Returns:
         What the loads read.
     """
     matrix = rotation(position[3:])
+    excited = _origin(position if fast is None else position.at[:2].add(-fast), matrix, conventions)[0]
     hull = hull if conventions.directions == "body" else hull.turned(matrix.T)
     submerged = _submerged(time, position, matrix, sea, hull, conventions)
     lines, still = _lines(velocity, submerged, hull, conventions)
@@ -76,6 +79,13 @@ def instant(
         flow = flow.weakened(1 - replaced)
     strip_flow, end_flow = _flow_past(flow, still, submerged, matrix, hull)
     covered, extent, shape = submerged.covered, submerged.extent, hull.strips.shape
+    strip_shape = StripShape(covered * shape * extent[0] * extent[1], covered * extent[::-1])
+    heavy, heavy_volume = submerged.elements, strip_shape.volume
+    if replaced is not None and conventions.wetting != "mean":
+        rest = _wetted_at_rest(hull)
+        heavy = Wetted(*(wet + replaced * (at_rest - wet) for wet, at_rest in zip(heavy, rest.elements, strict=True)))
+        at_rest = rest.covered * shape * rest.extent[0] * rest.extent[1]
+        heavy_volume = heavy_volume + replaced * (at_rest - heavy_volume)
     return Instant(
         time,
         position,
@@ -84,13 +94,15 @@ def instant(
         environment,
         hull,
         submerged.elements,
-        StripShape(covered * shape * extent[0] * extent[1], covered * extent[::-1]),
+        heavy,
+        heavy_volume,
+        strip_shape,
         EndShape.of(hull, submerged.elements, covered, extent),
         strip_flow,
         end_flow,
         lines,
         sea.drift(time),
-        None if replaced is None else sea.excitation(time, _origin(position, matrix, conventions)[0]),
+        None if replaced is None else sea.excitation(time, excited),
         _lid(flow, matrix, hull),
     )
 
@@ -113,16 +125,29 @@ def _submerged(
     conventions: Conventions,
 ) -> _Submerged:
     """Submerged part of the hull's elements, strips, ends and faces."""
-    strips, ends, count = hull.strips, hull.ends, hull.elements.start.shape[1]
-    roots = jnp.concatenate([hull.elements.start, ends.position[:, : hull.ends_without_faces]], axis=1)
     if conventions.wetting == "mean":
-        vertical, depth = jnp.array([0.0, 0.0, 1.0]), -roots[2]
-    else:
-        vertical = matrix[2]
-        depth = -(position[2] + vertical @ roots)
-        place, follows = _origin(position, matrix, conventions)
-        surface = sea.surface(time, place[:, None] + follows @ hull.gauges)
-        depth = depth if surface is None else depth + surface[jnp.array(hull.gauge_of, dtype=int)]
+        return _wetted_at_rest(hull)
+    roots, vertical = _roots(hull), matrix[2]
+    depth = -(position[2] + vertical @ roots)
+    place, follows = _origin(position, matrix, conventions)
+    surface = sea.surface(time, place[:, None] + follows @ hull.gauges)
+    depth = depth if surface is None else depth + surface[jnp.array(hull.gauge_of, dtype=int)]
+    return _wetted(hull, vertical, depth)
+
+
+def _roots(hull: Hull) -> Float[Array, "3 k"]:
+    """Starts of elements, then ends without faces."""
+    return jnp.concatenate([hull.elements.start, hull.ends.position[:, : hull.ends_without_faces]], axis=1)
+
+
+def _wetted_at_rest(hull: Hull) -> _Submerged:
+    """Submerged part of the hull at its reference position in still water."""
+    return _wetted(hull, jnp.array([0.0, 0.0, 1.0]), -_roots(hull)[2])
+
+
+def _wetted(hull: Hull, vertical: Float[Array, "3"], depth: Float[Array, " k"]) -> _Submerged:
+    """Submerged part of the hull, with the vertical in body axes and the depths of `_roots` (m)."""
+    strips, ends, count = hull.strips, hull.ends, hull.elements.start.shape[1]
     elements, of = hull.wetted(vertical, depth[:count]), jnp.array(strips.element, dtype=int)
     covered, reach = elements.length[of] * strips.weight, elements.reach[of] * strips.fraction
     wet = jnp.concatenate([hull.ends_wetted(depth[count:]), jnp.ones(len(ends.strip))])

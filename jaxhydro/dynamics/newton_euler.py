@@ -52,12 +52,12 @@ def sum_of_loads(loads: Sequence[AbstractLoad], now: Instant, memory: tuple[Any,
         force = force + jnp.concatenate([earth[:3] @ now.rotation, earth[3:] @ now.rotation])
     hull, on_strips, on_ends = now.hull, jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
     per_volume, end_mass = total("element_mass", jnp.zeros((2, len(hull.elements.length)))), total("end_mass", on_ends)
-    line_mass = hull.join(now.over_strips(per_volume) * now.strip_shape.volume, end_mass)
+    line_mass = hull.join(now.over_strips(per_volume) * now.heavy_volume, end_mass)
     on_lines = hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward
     return LoadSum(
         force + hull.wrench(on_lines, now.lines.away),
         total("added_mass", jnp.zeros((6, 6))),
-        hull.masses(per_volume, end_mass, now.wetted),
+        hull.masses(per_volume, end_mass, now.heavy),
         hull.moments,
         tuple(action.memory_rate for action in actions),
     )

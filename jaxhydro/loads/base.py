@@ -91,6 +91,14 @@ class AbstractLoad(AbstractEffect):
         """
         return None
 
+    def fast_displacement(self, memory: Any) -> Float[Array, "2"] | None:
+        """Part of the horizontal displacement (m, earth axes) that computed wave forces do not follow, or None.
+
+        Args:
+            memory: The load's memory.
+        """
+        return None
+
     @abc.abstractmethod
     def act(self, now: Instant, memory: Any) -> Action:
         """Forces, added mass and memory rate at an instant.

@@ -1,7 +1,10 @@
 """First-order wave forces from a radiation-diffraction program, in place of the strips'."""
 
+import math
 from typing import Any, ClassVar
 
+import equinox as eqx
+import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
@@ -9,23 +12,36 @@ from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import parameter
 from jaxhydro.waves.excitation import AnyExcitation
 
+CORNER = 2 * math.pi * 0.02  # rad/s, at the size of VolturnUS-S: between slow surge and the longest waves
+
 
 class ComputedExcitation(AbstractLoad):
     """First-order wave force from tables, in place of that of the strips.
 
-    F_i(t) = s Re sum_k X_i(w_k) A_k exp(i (w_k t - k x)), of the undisturbed first-order waves where the platform is
-    horizontally (`waves_at` of `Model`), along earth axes (`Excitation`; Newman 1977, Marine Hydrodynamics, section 6.15);
-    what accelerations and pressures of the water do to strips and ends counts 1 - s.
+    F_i(t) = s Re sum_k X_i(w_k) A_k exp(i (w_k t - k x)), of the undisturbed first-order waves, along earth axes
+    (`Excitation`; Newman 1977, Marine Hydrodynamics, section 6.15); what accelerations and pressures of the water do to strips
+    and ends counts 1 - s.
+
+    x is where the platform is horizontally, its motion in the waves left out (`waves_at` of `Model`, "displaced"); at the
+    origin with "mean". A force that follows the motion in the waves has a second-order part, which is in the quadratic
+    transfer function, too: here it would count twice (Faltinsen 1990, chapter 5; OpenFAST HydroDyn, ExctnDisp 2). So the
+    displacement passes a low-pass filter of second order (Butterworth, corner frequency c): with u the velocity, y the part
+    that is left out and z' the velocity of the rest,
+
+        dy/dt = u - z',  dz'/dt = c^2 y - sqrt(2) c z'.
 
     s is a share: 1 for the program's own excitation, with drag alone left to the strips, as OpenFAST HydroDyn has a
-    potential-flow body (at the platform's mean position, unless ExctnDisp is 1); 0 for that of the strips. What the program
-    leaves out the strips then leave out with it: wetting, stretching and bound waves act by drag only. Added mass stays that
-    of the members. Of waves that are sent back (`WaveReflection`) the strips alone know. An irregular sea has to be prepared
-    with `Model.excitation`.
+    potential-flow body; 0 for that of the strips. What the program leaves out the strips then leave out with it: wetting,
+    stretching and bound waves act by drag only. Added mass stays that of the members, with share s of it on the part that is
+    wet at rest: what its wetting does in waves is in the quadratic transfer function. Of waves that are sent back
+    (`WaveReflection`) the strips alone know. An irregular sea has to be prepared with `Model.excitation`.
+
+    `corner` is c (rad/s).
     """
 
     excitation: AnyExcitation
     share: Float[Array, ""] = parameter("-", "share of the computed excitation, in place of the strips'", -0.5, 2.0)
+    corner: float = eqx.field(static=True, default=CORNER)
     source: ClassVar[str] = "Newman 1977, Marine Hydrodynamics, section 6.15; OpenFAST HydroDyn, WAMIT module (ExctnMod 1)"
 
     def excitation_table(self) -> AnyExcitation:
@@ -34,12 +50,21 @@ class ComputedExcitation(AbstractLoad):
     def covers(self) -> tuple[str, float, float]:
         return "excitation", float(self.excitation.omega[0]), float(self.excitation.omega[-1])
 
+    def rest(self) -> Float[Array, "2 2"]:
+        return jnp.zeros((2, 2))
+
+    def fast_displacement(self, memory: Float[Array, "2 2"]) -> Float[Array, "2"]:
+        return memory[0]
+
     def replaces(self) -> Float[Array, ""]:
         return self.share
 
     def act(self, now: Instant, memory: Any) -> Action:
+        fast, slow_velocity = memory
+        turning = self.corner * (self.corner * fast - math.sqrt(2) * slow_velocity)
+        rate = jnp.stack([now.earth_velocity()[:2] - slow_velocity, turning])
         if now.end_flow.pressure is None:
-            return Action()
+            return Action(memory_rate=rate)
         if now.excitation is None:
             raise ValueError("the sea was made without the platform's excitation: prepare it with `Model.excitation`")
-        return Action(force=self.share * now.excitation)
+        return Action(force=self.share * now.excitation, memory_rate=rate)

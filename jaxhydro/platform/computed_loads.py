@@ -16,6 +16,7 @@ from jaxhydro.interop.wamit_drift import read_directional_transfer, read_transfe
 from jaxhydro.interop.wamit_excitation import read_directional_excitation, read_excitation
 from jaxhydro.interop.wamit_radiation import read_wamit
 from jaxhydro.loads import AbstractLoad, Buoyancy, ComputedExcitation, ComputedRadiation, DriftTransfer
+from jaxhydro.loads.computed_excitation import CORNER
 from jaxhydro.platform import schema as schema
 from jaxhydro.platform.computed_hydrostatics import hydrostatic_stiffness
 from jaxhydro.platform.table_checks import (
@@ -28,6 +29,7 @@ from jaxhydro.platform.table_checks import (
     same_columns,
 )
 from jaxhydro.remarks import Remark, as_warnings
+from jaxhydro.scales import pace_of, size_of
 from jaxhydro.waves.directional_transfer import AnyTransfer
 from jaxhydro.waves.excitation import AnyExcitation
 
@@ -85,8 +87,15 @@ def _column(declared: schema.Radiation) -> str:
     return f"Its first column is read by {declared.by}: see `by`." if declared.kind == "wamit" else ""
 
 
-def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[ComputedExcitation, tuple[Remark, ...]]:
+def excitation_of(
+    declared: schema.Excitation, water: schema.Water, corner: float = CORNER
+) -> tuple[ComputedExcitation, tuple[Remark, ...]]:
     """Excitation load that a platform file declares, and remarks.
+
+    Args:
+        declared: The key `excitation`.
+        water: The key `water`.
+        corner: Corner frequency (rad/s) of the load's filter.
 
     Raises:
         InputError: The file is wrong.
@@ -109,7 +118,7 @@ def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[Com
             table = _simplest(read_capytaine_directions(declared.file, notes=notes, **own))
         else:
             table = read_capytaine_excitation(declared.file, heading=declared.heading, notes=notes, **own)
-    load = ComputedExcitation(table, share=jnp.asarray(float(declared.use == "load")))
+    load = ComputedExcitation(table, share=jnp.asarray(float(declared.use == "load")), corner=float(corner))
     return load, (*as_warnings(doubts), *map(Remark, notes))
 
 
@@ -161,14 +170,15 @@ def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[Abstr
         if radiates.kind == "wamit":
             columns.append(Column(radiates.file, realised.coefficients.omega, radiates.by))
     if (excites := platform.excitation) is not None:
-        excitation, said = excitation_of(excites, water)
+        mass = platform.rigid_body.combined()[0]
+        excitation, said = excitation_of(excites, water, CORNER / pace_of(size_of(mass, water.density), water.gravity))
         loads.append(excitation)
         remarks += said
         if excites.kind == "wamit":
             of_one = _one_heading(excitation.excitation)
             omega, force = np.asarray(of_one.omega), np.asarray(of_one.force)
             heave = hydrostatic_stiffness(buoyancy, water.density * water.gravity)[2, 2]
-            hull = LongWaves(float(heave), platform.rigid_body.combined()[0], water.depth, water.gravity)
+            hull = LongWaves(float(heave), mass, water.depth, water.gravity)
             remarks += as_warnings(excitation_column(omega, force, excites.by, excites.file, hull))
             columns.append(Column(excites.file, omega, excites.by))
     if (drifts := platform.drift) is not None:
