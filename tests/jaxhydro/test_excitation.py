@@ -1,5 +1,6 @@
 """Computed excitation: against sums over components, strips' own force, WAMIT's file format, and OpenFAST's own force."""
 
+import dataclasses
 import math
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
+from scipy.signal import butter, freqs
 from test_loads import COLUMN, PONTOON, RHO, G, build, model_of, only
 from test_water_effects import HULL, WATER, acts, irregular, with_values
 from typer.testing import CliRunner
@@ -61,7 +63,7 @@ def test_the_force_is_the_sum_over_components(order: int, heading: float) -> Non
         for time in (10.0, 36.5, 107.25):
             exact = 0.7 * by_sum(sea, time, table, position[:2])
             for met, error in ((prepared, 2e-5), (sea, 1e-9), (sea.direct(), 1e-9)):
-                found, _ = acts(model, position, REST, (None,), met, time)
+                found, _ = acts(model, position, REST, model.rest().memory, met, time)
                 assert_allclose(found, exact, atol=error * np.abs(exact).max())
 
 
@@ -70,14 +72,14 @@ def test_it_takes_the_place_of_the_strips_own() -> None:
     """Share s: s of the table's, 1 - s of what acceleration and pressure do to strips and ends; added mass is as it was."""
     strips = only(build(COLUMN, PONTOON), StripInertia, EndInertia)
     table = ComputedExcitation(Excitation.of(GRID, forces()), 0.0)
-    sea, none = irregular(2).direct(), (None,) * 3
+    sea = irregular(2).direct()
     model = strips.with_effect(table)
-    own, _ = acts(strips, AWAY, REST, none[:2], sea, 20.0)
+    own, _ = acts(strips, AWAY, REST, (None,) * 2, sea, 20.0)
     rotation = np.asarray(jh.rotations.rotation(jnp.asarray(AWAY[3:])))
     earth = by_sum(irregular(), 20.0, forces(), AWAY[:2])
     theirs = np.concatenate([rotation.T @ earth[:3], rotation.T @ earth[3:]])
     for share in (0.0, 0.4, 1.0):
-        found, _ = acts(model.with_values({"computed_excitation.share": share}), AWAY, REST, none, sea, 20.0)
+        found, _ = acts(model.with_values({"computed_excitation.share": share}), AWAY, REST, model.rest().memory, sea, 20.0)
         assert_allclose(found, (1 - share) * own + share * theirs, atol=1e-9 * np.abs(theirs).max())
     still = [
         np.asarray(one.rate(jnp.zeros(()), one.rest(), jh.StillWater()).velocity)
@@ -99,8 +101,58 @@ def test_what_strips_do_in_small_waves_is_their_excitation() -> None:
     sea = irregular()
     own = [acts(strips, REST, REST, none, sea.direct(), t)[0] for t in (5.0, 41.3)]
     load = ComputedExcitation(Excitation.of(omega, table), 1.0)
-    found = [acts(model_of(strips, load), REST, REST, (None,), sea.direct(), t)[0] for t in (5.0, 41.3)]
+    found = [acts(model_of(strips, load), REST, REST, (load.rest(),), sea.direct(), t)[0] for t in (5.0, 41.3)]
     assert_allclose(found, own, atol=2e-3 * np.abs(own).max())
+
+
+def test_a_motion_in_the_waves_does_not_move_the_force() -> None:
+    """It is of the place where the platform is without its fast displacement; with waves at the mean place, of that alone."""
+    sea, table = irregular(), forces()
+    model = model_of(build(COLUMN), ComputedExcitation(Excitation.of(GRID, table), 1.0))
+    fast = (jnp.array([[2.0, 1.0], [0.0, 0.0]]),)
+    found, _ = acts(model, AWAY * [1, 1, 1, 0, 0, 0], REST, fast, sea, 36.5)
+    assert_allclose(found, by_sum(sea, 36.5, table, (5.0, -4.0)), rtol=1e-9)
+    mean = dataclasses.replace(model, conventions=dataclasses.replace(model.conventions, waves_at="mean"))
+    found, _ = acts(mean, AWAY * [1, 1, 1, 0, 0, 0], REST, fast, sea, 36.5)
+    assert_allclose(found, by_sum(sea, 36.5, table), rtol=1e-9)
+
+
+@pytest.mark.parametrize("period", [12.0, 50.0, 200.0])
+def test_the_fast_displacement_is_a_butterworth_filter(period: float) -> None:
+    """Of second order: s^2/(s^2 + sqrt(2) c s + c^2) by scipy, from the rates of the memory."""
+    load = ComputedExcitation(Excitation.of(GRID, forces()), 1.0, corner=0.1)
+    model, omega = model_of(build(COLUMN), load), 2 * math.pi / period
+
+    def rates(velocity: float, memory: np.ndarray) -> np.ndarray:
+        turning = AWAY * [0, 0, 0, 1, 1, 1]  # velocities are in body axes
+        along = np.asarray(jh.rotations.rotation(jnp.asarray(turning[3:]))).T @ [velocity, 0.0, 0.0]
+        rate = acts(model, turning, [*along, 0, 0, 0], (jnp.asarray(memory),), irregular(), 0.0)[1]
+        return np.asarray(rate[0])[:, 0]
+
+    states = np.eye(2)[:, :, None] * [1.0, 0.0]
+    matrix, drive = np.stack([rates(0.0, state) for state in states], axis=1), rates(1.0, np.zeros((2, 2)))
+    response = np.linalg.solve(1j * omega * np.eye(2) - matrix, drive * 1j * omega)[0]
+    _, exact = freqs(*butter(2, 0.1, "highpass", analog=True), worN=[omega])
+    assert_allclose(response, exact[0], rtol=1e-12)
+
+
+def test_added_mass_does_not_follow_the_wetting() -> None:
+    """Beside a computed force: that of the part that is wet at rest, in a crest and at a heave; without it, of what is wet."""
+    sea, heaved = irregular().direct(), np.array([0.0, 0, -2.0, 0, 0, 0])
+    load = ComputedExcitation(Excitation.of(GRID, forces()), 1.0)
+    rest, wet = (build(COLUMN, PONTOON, wetting=wetting) for wetting in ("mean", "instantaneous"))
+
+    def masses(model: jh.Model, position: np.ndarray) -> np.ndarray:
+        state = jh.State(jnp.asarray(position), jnp.zeros(6), model.rest().memory)
+        return np.asarray(model.sum_of_loads(model.instant(jnp.asarray(20.0), state, sea), state.memory).masses)
+
+    expected = masses(rest, REST)
+    with_force = wet.with_effect(load)
+    assert_allclose(masses(with_force, heaved), expected, rtol=1e-12)
+    half = masses(with_force.with_values({"computed_excitation.share": 0.5}), heaved)
+    moved = masses(wet, heaved)
+    assert np.abs(moved / expected - 1).max() > 0.05
+    assert (np.minimum(moved, expected) <= half * (1 + 1e-12)).all() and (half <= np.maximum(moved, expected) * (1 + 1e-12)).all()
 
 
 def test_it_moves_with_the_waves() -> None:
@@ -111,7 +163,7 @@ def test_it_moves_with_the_waves() -> None:
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 400, (0.0,)), exciting=model.excitation)
     exact = by_sum(sea, 36.5, table, (-4.0, 0.0))
     for met, error in ((prepared, 2e-5), (sea, 1e-9)):
-        found, _ = acts(model, REST, REST, (None,), met, 36.5)
+        found, _ = acts(model, REST, REST, model.rest().memory, met, 36.5)
         assert_allclose(found, exact, atol=error * np.abs(exact).max())
 
 
@@ -119,7 +171,7 @@ def test_a_sea_without_it_is_refused() -> None:
     model = model_of(build(COLUMN), ComputedExcitation(Excitation.of(GRID, forces()), 1.0))
     bare = irregular().prepared(HULL, None, Clock(10.0, 0.25, 40, (0.0,)))
     with pytest.raises(ValueError, match=r"prepare it with `Model\.excitation`"):
-        acts(model, REST, REST, (None,), bare, 12.0)
+        acts(model, REST, REST, model.rest().memory, bare, 12.0)
     with pytest.raises(ValueError, match="two loads"):
         assert model.with_effect(ComputedExcitation(Excitation.of(GRID, forces()), 1.0)).excitation is None
     with pytest.raises(ValueError, match="two ascending frequencies or more"):
