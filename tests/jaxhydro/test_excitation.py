@@ -118,8 +118,8 @@ def test_a_motion_in_the_waves_does_not_move_the_force() -> None:
 
 
 @pytest.mark.parametrize("period", [12.0, 50.0, 200.0])
-def test_the_fast_displacement_is_a_butterworth_filter(period: float) -> None:
-    """Of second order: s^2/(s^2 + sqrt(2) c s + c^2) by scipy, from the rates of the memory."""
+def test_the_slow_displacement_is_that_behind_a_butterworth_filter(period: float) -> None:
+    """Of second order, low-pass, by scipy; from the rates of the memory."""
     load = ComputedExcitation(Excitation.of(GRID, forces()), 1.0, corner=0.1)
     model, omega = model_of(build(COLUMN), load), 2 * math.pi / period
 
@@ -132,8 +132,8 @@ def test_the_fast_displacement_is_a_butterworth_filter(period: float) -> None:
     states = np.eye(2)[:, :, None] * [1.0, 0.0]
     matrix, drive = np.stack([rates(0.0, state) for state in states], axis=1), rates(1.0, np.zeros((2, 2)))
     response = np.linalg.solve(1j * omega * np.eye(2) - matrix, drive * 1j * omega)[0]
-    _, exact = freqs(*butter(2, 0.1, "highpass", analog=True), worN=[omega])
-    assert_allclose(response, exact[0], rtol=1e-12)
+    _, exact = freqs(*butter(2, 0.1, analog=True), worN=[omega])
+    assert_allclose(1 - response, exact[0], rtol=1e-9)
 
 
 def test_added_mass_does_not_follow_the_wetting() -> None:
@@ -146,13 +146,13 @@ def test_added_mass_does_not_follow_the_wetting() -> None:
         state = jh.State(jnp.asarray(position), jnp.zeros(6), model.rest().memory)
         return np.asarray(model.sum_of_loads(model.instant(jnp.asarray(20.0), state, sea), state.memory).masses)
 
-    expected = masses(rest, REST)
+    expected = masses(rest, heaved)
     with_force = wet.with_effect(load)
     assert_allclose(masses(with_force, heaved), expected, rtol=1e-12)
     half = masses(with_force.with_values({"computed_excitation.share": 0.5}), heaved)
     moved = masses(wet, heaved)
-    assert np.abs(moved / expected - 1).max() > 0.05
-    assert (np.minimum(moved, expected) <= half * (1 + 1e-12)).all() and (half <= np.maximum(moved, expected) * (1 + 1e-12)).all()
+    assert (np.abs(moved - expected) > 0.02 * expected)[expected > 0].any()
+    assert (np.minimum(moved, expected) <= half + 1e-6).all() and (half <= np.maximum(moved, expected) + 1e-6).all()
 
 
 def test_it_moves_with_the_waves() -> None:
