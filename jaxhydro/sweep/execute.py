@@ -21,9 +21,10 @@ from jaxhydro.files import check_folder
 from jaxhydro.platform.schema import builtin_platforms, builtin_text, load_platform
 from jaxhydro.remarks import Remark
 from jaxhydro.sweep.batch import Setup, pace_of_platform, setup_of
-from jaxhydro.sweep.cases import named, plan_of
+from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.local import simulate_locally
 from jaxhydro.sweep.resources import Workload, chosen, supports_of
+from jaxhydro.sweep.sea_states import named
 from jaxhydro.sweep.store import (
     DONE,
     FAILED,
