@@ -9,12 +9,14 @@ from jaxtyping import Float
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.sea_of_request import NOTED_SHARE, usual_cutoff
 from jaxhydro.dynamics.table_ranges import TableRange, table_ranges
+from jaxhydro.environment import Environment
 from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.remarks import Remark
 from jaxhydro.sweep.batch import Setup, failure_reason, sea_of
 from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.sea_states import State, named
 from jaxhydro.waves.irregular import harmonics, repeat_period
+from jaxhydro.waves.sea_limits import LIMITS
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
 
 STATES_IN_MEMORY = 256  # sea states whose spectra are in memory
@@ -66,6 +68,22 @@ def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Rem
             state = max(said, key=found.__getitem__)
             others = f" (so or less {_in(len(said), len(found))})" if len(found) > 1 else ""
             yield said[state]._replace(text=said[state].text + others)
+
+
+def near_limits(plan: Plan, environment: Environment, failing: dict[State, str]) -> Iterator[Remark]:
+    """Remarks on sea states near the limits of wave theory, each for the steepest sea state that it is about."""
+    states = [state for state in dict.fromkeys(case.state for case in plan.cases) if state not in failing]
+    states.sort(key=lambda state: state.height / state.peak_period**2, reverse=True)
+    for limit in LIMITS:
+        said = {
+            state: remark
+            for state in states
+            if (remark := limit(state.height, period := state.peak_period, environment, plan.order, plan.duration / period))
+        }
+        if said:
+            state, remark = next(iter(said.items()))
+            others = f" (so {_in(len(said), len(states))})" if len(states) > 1 else ""
+            yield remark._replace(text=f"{named(state)}: {remark.text}{others}")
 
 
 def impossible(setup: Setup) -> dict[State, str]:
