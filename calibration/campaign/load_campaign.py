@@ -108,10 +108,13 @@ class Campaign:
 def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]:
     """Tests in waves of another heading than the platform's tables are of."""
     for i, test in enumerate(manifest.tests):
-        other = platform.of_other_waves(test.sea.heading) if test.kind in IN_WAVES and test.use != "ignore" else None
-        if other is not None:
-            expected = f"{other.words} deg, the {other.key} of {manifest.platform}"
-            yield Problem(f"tests[{i}].sea.heading", expected, f"{test.sea.heading:g} deg")
+        if test.kind not in IN_WAVES or test.use == "ignore":
+            continue
+        stated = {f"systems[{j}].heading": one.heading for j, one in enumerate(test.sea.systems)}
+        for key, heading in (stated or {"heading": test.sea.heading}).items():
+            if (other := platform.of_other_waves(heading)) is not None:
+                expected = f"{other.words} deg, the {other.key} of {manifest.platform}"
+                yield Problem(f"tests[{i}].sea.{key}", expected, f"{heading:g} deg")
 
 
 def load_campaign(path: str | PathLike[str]) -> Campaign:

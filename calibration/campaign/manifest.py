@@ -15,6 +15,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
+from calibration.campaign.stated_sea import Sea
 from calibration.campaign.stated_sizes import check_stated_size, stated_size_problems
 from calibration.campaign.tracked_point import missing_angles
 from jaxhydro.errors import (
@@ -103,12 +104,6 @@ class Zero(Schema):
         if (self.window is None) == (self.test is None):
             raise Faults(Problem("", "either a window or a test", "both" if self.test else "neither"))
         return self
-
-
-class Sea(Schema):
-    """The sea's heading, deg, towards which it runs: 0 is along +x."""
-
-    heading: Number = 0.0
 
 
 class Test(Schema):
@@ -282,6 +277,10 @@ def _test_problems(manifest: Manifest) -> Iterator[Problem]:
             )
         if test.kind in IN_WAVES and test.use != "ignore" and manifest.wave_channel is None:
             yield Problem(f"{at}.kind", "a wave_channel in the manifest, since waves drive this test", "none")
+        in_waves = test.kind in IN_WAVES and test.use != "ignore"
+        if in_waves and not test.sea.long_crested and manifest.records.order != 1:
+            hint = "Second order is not separated from a record of one gauge then."
+            yield Problem(f"{at}.sea", "records: {order: 1} with waves of several headings", "order: 2", hint)
         if manifest.tracked_point is not None:
             yield from (
                 Problem(f"{at}, {p.where}", p.expected, p.found, p.hint)

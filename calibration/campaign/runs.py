@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calibration.campaign.directions import StatedDirections, stated_directions
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES, WAVE, platform_source
 from calibration.campaign.records import Record, unit_factors, valid_values, whole_series
@@ -26,9 +27,10 @@ class Run:
         time: (n,) even times (s).
         wave: (n,) surface elevation (m), zero in still water.
         position: Position of the wave gauge (m).
-        heading: Direction that the waves run to (rad).
+        heading: Direction that the waves run to (rad); of several, that of the highest system.
         records: Tests that are windows of the file.
         notes: Remarks in words.
+        directions: Stated directions of waves of several headings, or None.
     """
 
     file: str
@@ -38,6 +40,7 @@ class Run:
     heading: float
     records: tuple[Record, ...]
     notes: tuple[str, ...]
+    directions: StatedDirections | None = None
 
     @property
     def step(self) -> float:
@@ -53,11 +56,11 @@ def runs(campaign: Campaign) -> tuple[Run, ...]:
     """The runs of all tests in waves that are not ignored. Raises InputError where there is none, or a wave record has no even
     clock, gaps or nothing."""
     source = str(campaign.folder / "campaign.yaml")
-    groups: dict[tuple[str, float, str], list[Record]] = {}
+    groups: dict[tuple[str, str, str], list[Record]] = {}
     for record in campaign.records:
         if record.kind in IN_WAVES and record.use != "ignore":
             test = record.test
-            key = (test.file, test.sea.heading, repr(campaign.manifest.channels_of(test)))
+            key = (test.file, repr(test.sea), repr(campaign.manifest.channels_of(test)))
             groups.setdefault(key, []).append(record)
     if not groups:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
@@ -95,9 +98,10 @@ def _run(campaign: Campaign, records: Sequence[Record]) -> Run:
         even * scale["time"],
         wave * scale[WAVE] - still.get(WAVE, 0.0),
         position,
-        math.radians(test.sea.heading),
+        math.radians(test.sea.mean_heading),
         tuple(sorted(records, key=lambda r: r.time[0])),
         tuple(notes),
+        stated_directions(test.sea, manifest.scale),
     )
 
 

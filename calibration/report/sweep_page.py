@@ -9,7 +9,7 @@ from calibration.formatting import listed as joined
 from calibration.report.web_page import embedded, inputs_table, render, written_on
 from calibration.vocabulary import Rows
 from jaxhydro.environment import DOFS
-from jaxhydro.sweep.cases import runs_in_words
+from jaxhydro.sweep.sea_states import State, runs_in_words
 from jaxhydro.sweep.sweep_results import SweepResults
 
 SWEEP_FILE = "sweep.json"
@@ -84,9 +84,7 @@ def page(saved: SweepResults, folder: Path) -> str:
         statistics=_statistics(saved),
         ranges=_ranges(saved),
         properties=list(_run(saved)),
-        failures=[
-            f"{runs_in_words((one.hs, one.tp, one.gamma), one.headings, one.seeds)}: {one.reason}" for one in saved.failures
-        ],
+        failures=[f"{runs_in_words(State.of(one), one.headings, one.seeds)}: {one.reason}" for one in saved.failures],
         images=embedded({folder / name: caption for name, caption in FIGURES.items()}).values(),
     )
 

@@ -30,12 +30,14 @@ from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.sea_of_request import share_within
 from jaxhydro.dynamics.simulate import largest_step
 from jaxhydro.dynamics.statics import equilibrium
+from jaxhydro.dynamics.table_ranges import heading_fault
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.hull.hull import Hull
 from jaxhydro.waves.irregular import separated_record
 from jaxhydro.waves.irregular_sea import Acting, IrregularSea
 from jaxhydro.waves.sea import Stretching
+from jaxhydro.waves.sea_limits import sea_limits
 from jaxhydro.waves.second_order import KINDS, Kind
 
 MAX_MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
@@ -149,6 +151,8 @@ class Comparison(NamedTuple):
 
 def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     """The sea of a run's whole record. Raises InputError where the band or the record do not do."""
+    if run.directions is not None and options.order != 1:
+        raise InputError(run.file, [Problem("order", "1 in a sea of several headings, as its test states", f"{options.order}")])
     inside = share_within(run.wave, run.step, options.low, options.cutoff)
     try:
         found = separated_record(
@@ -166,8 +170,15 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     except ValueError as error:
         expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
         raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
+    waves, notes = found.waves, []
+    if run.directions is not None:
+        waves = run.directions.turned(waves, run.position)
+        notes.append(
+            f"{run.file}: directions of its waves are drawn from what its test states (seed {run.directions.seed}). The sea is "
+            "the record at the gauge; elsewhere only its spectrum is known, and motions agree by spectra, not sample by sample"
+        )
     sea = IrregularSea(
-        found.waves,
+        waves,
         environment,
         options.order,
         options.stretching,
@@ -175,7 +186,6 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         highest_difference=options.highest_difference,
         acting=options.acting,
     )
-    notes = []
     band = f"{options.low:g} to {options.cutoff:g} Hz"
     if found.mismatch > MAX_MISMATCH:
         notes.append(
@@ -187,6 +197,11 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
             f"{run.file}: only {100 * inside:.0f} % of the wave record's variance is within {band}; "
             "`wave_band` in campaign.yaml sets another band"
         )
+    if run.records and all(record.kind == "irregular" for record in run.records):
+        period = record_peak_period(run.wave, run.step, options.low, options.cutoff)
+        count = float(run.time[-1] - run.time[0]) / period
+        limits = sea_limits(4 * float(np.std(run.wave)), period, environment, options.order, count)
+        notes += [f"{run.file}: {one.text}" for one in limits]
     return RunSea(sea, found.mismatch, found.rounds, inside, tuple(notes))
 
 
@@ -200,9 +215,25 @@ def sea_step(model: Model, options: Options) -> float:
     return largest_step(model, options.cutoff)
 
 
-def seas_of(campaign: Campaign, environment: Environment, options: Options) -> Seas:
-    """The runs of a campaign and their seas, the first with the remark on all wave records. Raises InputError."""
-    made = [(run, sea_of(run, environment, options)) for run in runs(campaign)]
+def seas_of(campaign: Campaign, environment: Environment, options: Options, several_headings: bool = False) -> Seas:
+    """The runs of a campaign and their seas, the first with the remark on all wave records.
+
+    Args:
+        campaign: The campaign.
+        environment: Water depth and gravity.
+        options: How waves are made.
+        several_headings: Whether seas of several headings will do: they are compared, not fitted.
+
+    Raises:
+        InputError: A record makes no sea, or a sea has several headings and may not.
+    """
+    found = runs(campaign)
+    spread = [record.id for run in found if run.directions is not None for record in run.records]
+    if spread and not several_headings:
+        expected = "tests in long-crested waves: seas of several headings can be simulated and compared, not fitted"
+        hint = "Mark such tests `use: ignore`, or state the heading alone."
+        raise InputError(str(campaign.folder / "campaign.yaml"), [Problem("tests", expected, ", ".join(spread), hint)])
+    made = [(run, sea_of(run, environment, options)) for run in found]
     if made and options.order == 2 and not campaign.manifest.records.model_fields_set:
         hint = second_order_hint([(run, one.sea) for run, one in made], (options.low, options.cutoff))
         made[0] = (made[0][0], dataclasses.replace(made[0][1], notes=(*made[0][1].notes, *hint)))
@@ -221,7 +252,7 @@ def compare(
     Raises InputError, and Diverged where a motion grows beyond all bounds.
     """
     model = with_diffraction(model, options)
-    made = seas_of(campaign, model.environment, options) if made is None else made
+    made = seas_of(campaign, model.environment, options, several_headings=True) if made is None else made
     step = sea_step(model, options)
     from_rest = campaign.manifest.zero is not None
     origin = equilibrium(model) if from_rest else None
@@ -230,6 +261,8 @@ def compare(
     for run, one in made:
         waves = one.sea.components
         say(f"{run.file}: {waves.omega.size} waves of {run.time[-1] - run.time[0]:.0f} s, order {options.order}; simulating")
+        if not one.sea.long_crested and (fault := heading_fault(model, np.asarray(waves.heading))) is not None:
+            raise InputError(run.file, [Problem("sea", *fault)])
         parts = run_segments(run, run.records, model, options.low, options.cutoff)
         try:
             for part, found_there, _ in simulate_segments(model, run, parts, one.sea, step):

@@ -188,6 +188,7 @@ def set_up_waves(
             if records:
                 pieces = tuple(piece for r in records for piece in _pieces(run, r, scale, part.begin, objective == "spectrum"))
                 times = jnp.asarray(run.time[part.begin : part.end + 1])
+                assert isinstance(taken.sea, SupportSea)  # `seas_of` refuses others
                 # arrays, so that another state is not compiled anew
                 state = None if part.state is None else jax.tree.map(jnp.asarray, part.state)
                 found.append(SeaRun(taken.sea, times, jnp.asarray(taken.step), pieces, start, state, taken.steps))

@@ -177,7 +177,8 @@ def simulate(
     model = _model(platform, calibration, diffraction, elements, heading if regular is not None else one)
     job = command.Job(platform, out, duration, dt, offset, step, figures, None if calibration is None else str(calibration))
     stretch = sea_options.stretching(given)
-    if not (command.run(model, job, regular, heading, stretch) if asked is None else sea_command.run(model, job, asked)):
+    of_regular = (regular, heading, stretch, order or 1)
+    if not (command.run(model, job, *of_regular) if asked is None else sea_command.run(model, job, asked)):
         raise typer.Exit(NOT_CONVERGED)
 
 

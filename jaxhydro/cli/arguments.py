@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from jaxhydro.cli.sea_options import ORDER, SEED, TIME_COLUMN, WAVE_COLUMN
+from jaxhydro.cli.sea_options import MAX_ORDER, ORDER, SEED, TIME_COLUMN, WAVE_COLUMN
 from jaxhydro.dynamics.requested_sea import TRANSIENT
 from jaxhydro.waves.wave_bands import CUTOFF, LOW
 
@@ -308,10 +308,11 @@ Order = Annotated[
     _option(
         "--order",
         HOW,
-        "2: with the waves that they bind (Sharma and Dean).",
-        f"{ORDER}; 1 in a sea of several headings",
+        "2: with the waves that they bind (Sharma and Dean; in regular waves Stokes). In regular waves 3 or more: stream "
+        "function of so many Fourier components.",
+        f"{ORDER}; 1 in a sea of several headings and in regular waves",
         min=1,
-        max=2,
+        max=MAX_ORDER,
     ),
 ]
 Stretching = Annotated[

@@ -1,6 +1,7 @@
 """`jaxhydro simulate` in irregular seas: files, tables and figures."""
 
 import time as clock
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,8 @@ from jaxhydro.dynamics.simulate import free_decay, largest_step
 from jaxhydro.dynamics.statics import Modes
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark
-from jaxhydro.waves.sea_limits import sea_limits
+from jaxhydro.waves.directional_spectrum import WaveSystem
+from jaxhydro.waves.sea_limits import sea_limits, shallow_water
 
 MIN_NATURAL_PERIODS = 10  # that statistics of a motion are over
 
@@ -40,9 +42,8 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
         raise InputError("--duration", [Problem("", expected, f"{kept.sum()} of them {job.dt:g} s apart")])
     say("Building the sea ...", stderr=True)
     sea, about, target, notes = build_sea(model, asked, job.duration)
-    print_remarks(
-        [*model.remarks, *wave_remarks(model), *outside(model, sea, about), *_limits(model, about, job.duration, asked.order)]
-    )
+    limits = _limits(model, about, job.duration, asked.order, asked.systems)
+    print_remarks([*model.remarks, *wave_remarks(model), *outside(model, sea, about), *limits])
     modes = print_rest(model, job.platform)
     print_remarks(_start_up(modes, job.duration - transient))
     step = largest_step(model, asked.band(pace)[1]) if job.step is None else job.step
@@ -89,12 +90,17 @@ def _start_up(modes: Modes, kept: float) -> list[Remark]:
     return [Remark(f"{said}: the start and chance are in its numbers. Take {longer:.2g} s or more (--duration)", warning=True)]
 
 
-def _limits(model: Model, about: dict[str, Any], duration: float, order: int) -> list[Remark]:
+def _limits(model: Model, about: dict[str, Any], duration: float, order: int, systems: Sequence[WaveSystem]) -> list[Remark]:
     """Remarks on a sea that comes near the limits of wave theory."""
     height, period = about["significant_wave_height"], about["peak_period"]
     if period is None:
         return []
-    return sea_limits(float(height), float(period), model.environment, order, duration / float(period))
+    found = sea_limits(float(height), float(period), model.environment, order, duration / float(period))
+    for one in systems if len(systems) > 1 else ():  # a low swell may be too long where the higher system is not
+        remark = shallow_water(one.hs, one.tp, model.environment, order, duration / one.tp)
+        if remark is not None and one.tp != period:
+            found.append(remark._replace(text=f"of the system of Tp {one.tp:g} s {remark.text}"))
+    return found
 
 
 UNITS = {

@@ -15,6 +15,7 @@ from jaxhydro.units import SI
 from jaxhydro.waves.irregular import sampling_interval
 
 ORDER, SEED = 2, 0
+MAX_ORDER = 30  # Fourier components of a regular wave
 DEFAULTS = {"--heading": 0.0, "--dt": 0.1}
 OF_SPECTRUM = ("--hs", "--tp", "--gamma", "--spectrum", "--seed", "--amplitudes")
 OF_DIRECTIONS = ("--sea", "--sea-file", "--x-bearing", "--spreading")
@@ -62,10 +63,17 @@ def of_campaign(given: Mapping[str, Any]) -> dict[str, Any]:
     for name in given:
         if name in unused or given[name] != DEFAULTS.get(name, given[name]):
             raise wrong(name, "it goes with a platform, not with a campaign, whose files say it: name its platform file")
+    order_of_sea(given)
     if "--cutoff" in given:
         positive(given["--cutoff"], "--cutoff")
     how = {name: given.get(f"--{name}") for name in ("order", "stretching", "diffraction", "cutoff")}
     return {name: value if isinstance(value, int | float) else str(value) for name, value in how.items() if value is not None}
+
+
+def order_of_sea(given: Mapping[str, Any]) -> None:
+    """Raise BadParameter for an order of irregular waves above 2."""
+    if given.get("--order", 1) > ORDER:
+        raise wrong("--order", f"1 or 2 expected in irregular waves, found {given['--order']}: more is of regular waves")
 
 
 def stretching(given: Mapping[str, Any]) -> Any:
@@ -85,10 +93,13 @@ def asked(given: Mapping[str, Any], heading: float) -> RequestedSea | None:
     if not record and (of_gauge := [name for name in OF_RECORD if name in given]):
         raise wrong(of_gauge[0], "a record expected with it, --wave FILE")
     if not record and not own and "--hs" not in named:
+        if "--wave-height" in given and set(named) == {"--order"}:
+            return None
         if named:
             what = "a significant wave height expected with it" if of_spectrum else "a sea expected with it"
             raise wrong(next(iter(named)), f"{what}: --hs 3.1 --tp 8.96" + ("" if of_spectrum else ", or --wave FILE"))
         return None
+    order_of_sea(given)
     kind = str(named.get("--spectrum", "jonswap"))
     hs, tp, gamma = (named.get(name) for name in ("--hs", "--tp", "--gamma"))
     if not record and not own:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Collection, Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -24,11 +24,13 @@ from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark
 from jaxhydro.rotations import rotation
 from jaxhydro.units import for_people, unit_of
-from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
+from jaxhydro.waves.regular_waves import regular_wave, series_remarks
+from jaxhydro.waves.sea import Stretching, WaveSea
 from jaxhydro.waves.sea_limits import sea_limits
 
 RAMP_PERIODS = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
+RESOLVED_HARMONICS = 3  # that have so many steps each; higher ones are small
 BED_TOLERANCE = 1e-6  # of the depth: what is below the bed by less touches it
 
 
@@ -107,8 +109,15 @@ def _lowest(position: Float[Array, "t 6"], points: Float[Array, "3 p"]) -> Float
     return jax.lax.map(lambda q: (rotation(q[3:])[2] @ points).min(), position)
 
 
-def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float, stretching: Stretching = "vertical") -> bool:
-    """Simulate, write and print; False where the motion grows beyond all bounds. `heading` in deg.
+def run(
+    model: Model,
+    job: Job,
+    wave: tuple[float, float] | None,
+    heading: float,
+    stretching: Stretching = "vertical",
+    order: int = 1,
+) -> bool:
+    """Simulate, write and print; False where the motion grows beyond all bounds. `heading` in deg, `order` of `regular_wave`.
 
     Raises InputError for a wave that cannot be, EquilibriumError where the platform does not rest.
     """
@@ -117,10 +126,12 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
     if wave is not None:
         if (fault := regular_fault(model, wave[1])) is not None:
             raise InputError("--wave-period", [Problem("", *fault)])
-        print_remarks([*wave_remarks(model), *sea_limits(*wave, model.environment, order=1)])
+        print_remarks([*wave_remarks(model), *sea_limits(*wave, model.environment, order=order)])
         ramp = min(RAMP_PERIODS * wave[1], 0.25 * job.duration)
-        sea = _sea(model, wave, heading, ramp, stretching)
-        step = min(default_step(model), wave[1] / STEPS_PER_WAVE) if step is None else step
+        sea = _sea(model, wave, heading, ramp, stretching, order)
+        print_remarks(series_remarks(sea, order))
+        shortest = wave[1] / min(order, RESOLVED_HARMONICS)
+        step = min(default_step(model), shortest / STEPS_PER_WAVE) if step is None else step
     print_rest(model, job.platform, DOFS if wave is not None else list(job.offset))
     times = job.times
     position = np.asarray(free_decay(model, job.offset, times, sea=sea, step=step).position)
@@ -135,6 +146,7 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
     inputs = job.inputs
     if wave is not None:
         inputs |= {"wave_height": wave[0], "wave_period": wave[1], "heading": heading, "ramp": ramp}
+        inputs |= {"order": float(order)} if order > 1 else {}
     source = f"jaxhydro {jaxhydro.__version__}"
     write_motion(motion, job.out, job.platform, source, figures=job.figures, hull=model.hull, inputs=inputs)
     _print_motion(motion, wave, ramp)
@@ -142,10 +154,17 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
     return True
 
 
-def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, stretching: Stretching) -> WaveSea:
+def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, stretching: Stretching, order: int) -> WaveSea:
+    how: dict[str, Any] = {"heading": math.radians(heading), "ramp": ramp, "stretching": stretching, "order": order}
     try:
-        return regular_wave(*wave, model.environment, heading=math.radians(heading), ramp=ramp, stretching=stretching)
+        return regular_wave(*wave, model.environment, **how)
+    except ImportError as error:
+        raise InputError("--order", [Problem("", "1 or 2, or raschii installed", f"{order} ({error})")]) from None
     except ValueError as error:
+        if "stretching" in str(error):
+            raise InputError("--stretching", [Problem("", "vertical or none from order 3 on", f"{stretching}")]) from None
+        if "is found" in str(error):
+            raise InputError("--wave-height", [Problem("", "a wave that can be", f"none ({error})")]) from None
         expected = "a wave that does not break"
         raise InputError("--wave-height", [Problem("", expected, f"one too steep ({error})")]) from None
 

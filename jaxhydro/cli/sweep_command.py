@@ -9,10 +9,10 @@ from jaxhydro.cli.console import complain, counting, say, table
 from jaxhydro.cli.simulate_command import print_remarks, print_rest, print_used
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interrupts import asked_to_stop, finished, stop_if_asked
-from jaxhydro.sweep.cases import runs_in_words
 from jaxhydro.sweep.cluster import workers_of
 from jaxhydro.sweep.execute import PreparedSweep, Progress, SessionResult, opened, prepared, run_all, to_do
 from jaxhydro.sweep.resources import chosen
+from jaxhydro.sweep.sea_states import State, runs_in_words
 from jaxhydro.sweep.store import RESULTS, locked_folder, open_results
 from jaxhydro.sweep.sweep_file import load_sweep
 from jaxhydro.sweep.sweep_results import SweepResults
@@ -152,7 +152,6 @@ def _print_results(found: SweepResults) -> None:
         complain(f"{found.runs.failed} of {found.runs.total} runs failed{share}")
         listed, others = found.failures[:MAX_PRINTED_FAILURES], found.failures[MAX_PRINTED_FAILURES:]
         for failure in listed:
-            state = failure.hs, failure.tp, failure.gamma
-            complain(f"{runs_in_words(state, failure.headings, failure.seeds)}: {failure.reason}")
+            complain(f"{runs_in_words(State.of(failure), failure.headings, failure.seeds)}: {failure.reason}")
         if others:
             complain(f"and {sum(failure.runs for failure in others)} more: see sweep.json")

@@ -199,14 +199,14 @@ class IrregularSimulation(NamedTuple):
     Attributes:
         response: Motion at the times asked for.
         grid: Motion at the ends of all steps.
-        sea: The sea as it was prepared.
+        sea: The sea as it was prepared; one of several headings by direct summation.
         step: Time step (s).
         steps: Number of steps.
     """
 
     response: Response
     grid: Grid
-    sea: SupportSea
+    sea: SupportSea | WaveSea
     step: float
     steps: int
 
@@ -222,6 +222,8 @@ def simulate_irregular(
     margin: float = 0.0,
 ) -> IrregularSimulation:
     """Simulate in an irregular sea, prepared anew for a larger box where the platform leaves the first.
+
+    A sea of several headings is summed directly.
 
     Args:
         model: The platform, with its coefficients in this sea.
@@ -240,6 +242,12 @@ def simulate_irregular(
         ValueError: The platform is carried away.
     """
     begin = float(times[0])
+    if not sea.long_crested:
+        duration = float(times[-1] - times[0])
+        steps = max(adams_bashforth.START_STEPS, math.ceil(duration / limit - 1e-9))
+        met = summed_directly(model, sea)
+        found, grid = _simulate(model, met, start, times, jnp.asarray(duration / steps), steps, method, adjoint)
+        return IrregularSimulation(found, grid, met, duration / steps, steps)
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     points, own = model.hull.extremities(), excursion_of(model)
     excursion = own
@@ -247,8 +255,8 @@ def simulate_irregular(
     while True:
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, **computed)
         found, grid = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
-        met: Any = model.through(prepared)  # with the box moved where the sea is
-        reached = float(_farthest(found.position, jnp.asarray(points), met))
+        box: Any = model.through(prepared)  # with the box moved where the sea is
+        reached = float(_farthest(found.position, jnp.asarray(points), box))
         if not reached + margin > prepared.half:
             return IrregularSimulation(found, grid, prepared, step, steps)
         if reached > prepared.half + 10 * own:

@@ -13,6 +13,7 @@ from jaxhydro.interop.mooring_system import NoCatenaries, catenary_section
 from jaxhydro.interop.openfast.added_terms import AddedTerms, matrix_entries, read_added_terms
 from jaxhydro.interop.openfast.ballast import ballast_parts, drop_restoring
 from jaxhydro.interop.openfast.coefficient_tables import CoefficientTables
+from jaxhydro.interop.openfast.deck_current import read_current
 from jaxhydro.interop.openfast.deck_files import DeckFiles, WaterColumn, module_items, open_deck, water_of
 from jaxhydro.interop.openfast.deck_sea import sea_items
 from jaxhydro.interop.openfast.elastodyn import read_parts
@@ -61,7 +62,9 @@ def read_openfast_deck(path: str | PathLike[str]) -> Conversion:
     if platform.get("members"):
         platform |= _forms(deck, items)
     if deck.waves is not None:
-        items += sea_items(deck.waves)
+        current, said = read_current(deck.waves, water.depth)
+        platform["water"] |= {"current": current} if current else {}
+        items += [*sea_items(deck.waves), *said]
     items += [item for file in deck.all() for item in _of_version(file)]
     return Conversion(platform, tuple(items), flow.files)
 

@@ -28,7 +28,6 @@ from jaxhydro.sweep.at_once import shared_preparation, simulate_in_halves
 from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.run_statistics import RunResults, run_results
 from jaxhydro.units import for_people
-from jaxhydro.waves.directional_spectrum import WaveSystem
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.support_sea import SupportSea
@@ -67,7 +66,7 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
         EquilibriumError: The platform has no static equilibrium.
     """
     declared = load_platform(platform)
-    for heading in sorted({case.heading for case in plan.cases}):
+    for heading in sorted(set().union(*(case.towards for case in plan.cases))):
         if (other := declared.of_other_waves(heading)) is not None:
             expected = f"{heading:g} deg, as in the sweep's headings"
             raise InputError(str(platform), [Problem(other.key, expected, f"{other.words} deg")])
@@ -118,11 +117,11 @@ def sea_of(setup: Setup, run: Run) -> IrregularSea:
     kind = plan.spectrum.replace("_", "-")
     how: dict[str, Any] = {"seed": run.seed, "amplitudes": plan.amplitudes, "low": plan.low, "cutoff": plan.cutoff}
     how |= {"order": plan.order, "stretching": plan.stretching, "transient": plan.start}
-    if plan.spreading is None:
+    systems = case.state.systems(case.heading, kind, plan.spreading)
+    if len(systems) == 1 and systems[0].spreading is None:
         asked = RequestedSea(case.hs, case.tp, case.gamma, kind, heading=case.heading, **how)
     else:
-        system = WaveSystem(case.hs, case.tp, case.gamma, case.heading, plan.spreading, kind)
-        asked = RequestedSea.of_systems((system,), **how)
+        asked = RequestedSea.of_systems(systems, **how)
     return build_sea(setup.model, asked, plan.duration).sea
 
 
@@ -141,13 +140,15 @@ def run_outcomes(setup: Setup, runs: Sequence[Run]) -> list[RunResults | str]:
 
     They differ from those of `run_outcome` by rounding.
     """
-    if setup.plan.spreading is not None:  # seas of several headings share no preparation
-        return [run_outcome(setup, run) for run in runs]
     found: dict[int, RunResults | str] = {}
     seas = {}
     for run in runs:
         try:
-            seas[run.number] = sea_of(setup, run)
+            sea = sea_of(setup, run)
+            if sea.long_crested:
+                seas[run.number] = sea
+            else:  # seas of several headings share no preparation
+                found[run.number] = run_outcome(setup, run)
         except Exception as error:
             found[run.number] = failure_reason(error)
     every = dict(zip(seas, simulate_in_halves(setup.model, list(seas.values()), setup.times, setup.limit)))
@@ -180,7 +181,7 @@ def _results(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray, wa
         model = setup.model.in_sea(state_of(sea.components))
         tension = np.asarray(_tensions(model, jnp.asarray(position)))
         channels |= {f"line{i + 1}": column for i, column in enumerate(tension.T)}
-    kept = run_results(times, plan.start, channels, run.case.tp, plan.exponents, plan.equivalent_frequency)
+    kept = run_results(times, plan.start, channels, run.case.state.peak_period, plan.exponents, plan.equivalent_frequency)
     return kept if plan.time_series else kept._replace(series=None)
 
 

@@ -5,13 +5,12 @@ import math
 import statistics
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 from jaxhydro.errors import InputError, Problem, shown
-from jaxhydro.sweep.sweep_schema import Grid, SeaState, Sweep
+from jaxhydro.sweep.sea_states import State, named
+from jaxhydro.sweep.sweep_schema import Grid, Heading, SeaState, Sweep
 from jaxhydro.waves.wave_bands import of_spectra
-
-State: TypeAlias = tuple[float, float, float | None]
 
 
 class Case(NamedTuple):
@@ -23,6 +22,12 @@ class Case(NamedTuple):
         gamma: Peak enhancement (-); None: IEC's, or not a JONSWAP spectrum.
         heading: Direction that the waves travel to (deg).
         probability: Fraction of the time.
+        spreading: As in `State`, and so are all that follow.
+        swell_hs: Significant wave height of the swell (m).
+        swell_tp: Peak period of the swell (s).
+        swell_gamma: Peak enhancement of the swell (-).
+        swell_heading: Direction that the swell travels to (deg).
+        swell_spreading: Exponent s of the swell (-).
     """
 
     hs: float
@@ -30,24 +35,22 @@ class Case(NamedTuple):
     gamma: float | None
     heading: float
     probability: float
+    spreading: float | None = None
+    swell_hs: float | None = None
+    swell_tp: float | None = None
+    swell_gamma: float | None = None
+    swell_heading: float | None = None
+    swell_spreading: float | None = None
 
     @property
     def state(self) -> State:
-        """Height, period and gamma of the sea state."""
-        return self[:3]
+        """Sea state without its heading."""
+        return State.of(self)
 
-
-def named(state: State) -> str:
-    """Sea state in words."""
-    hs, tp, gamma = state
-    return f"Hs {hs:g} m, Tp {tp:g} s" + ("" if gamma is None else f", gamma {gamma:g}")
-
-
-def runs_in_words(state: State, headings: Sequence[float], seeds: Sequence[int]) -> str:
-    """Runs of one sea state in words."""
-    towards = f"heading {headings[0]:g} deg" if len(headings) == 1 else f"{len(headings)} headings"
-    drawn = f"seed {seeds[0]}" if len(seeds) == 1 else f"{len(seeds)} seeds"
-    return f"{named(state)}, {towards}, {drawn}"
+    @property
+    def towards(self) -> set[float]:
+        """Mean directions that its systems travel to (deg)."""
+        return {self.heading} if self.swell_hs is None or self.swell_heading is None else {self.heading, self.swell_heading}
 
 
 class Run(NamedTuple):
@@ -178,17 +181,21 @@ def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[st
     """
     states: tuple[SeaState, ...] = sweep.scatter.states() if isinstance(sweep.scatter, Grid) else sweep.scatter  # type: ignore[assignment]
     notes: list[str] = []
-    shares: dict[State, float] = {}
+    shares: dict[tuple[State, float | None], float] = {}
     twice: dict[State, None] = {}
     for one in states:
-        state = (one.hs, one.tp, one.gamma)
-        if state in shares:
+        state = State.of(one)
+        if (state, one.heading) in shares:
             twice[state] = None
-        shares[state] = shares.get(state, 0.0) + one.probability
+        shares[state, one.heading] = shares.get((state, one.heading), 0.0) + one.probability
     if twice:
         more = f" and {len(twice) - 1} more are" if len(twice) > 1 else " is"
         notes.append(f"{named(next(iter(twice)))}{more} in the table more than once: run once, and its probabilities add up")
-    every = [Case(*state, one.heading, share * one.probability) for state, share in shares.items() for one in sweep.towards]
+    every = [
+        Case(state.hs, state.tp, state.gamma, towards.heading, share * towards.probability, *state[3:])
+        for (state, own), share in shares.items()
+        for towards in (sweep.towards if own is None else (Heading(heading=own),))
+    ]
     total = sum(case.probability for case in every)
     if not total > 0:
         key = "headings" if any(share > 0 for share in shares.values()) else "scatter"
@@ -211,7 +218,8 @@ def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[st
         "time_series",
         "spreading",
     )
-    usual = of_spectra([case.tp for case in cases], pace, [case.probability * case.hs**2 for case in cases])
+    peaks = [(tp, case.probability * hs**2) for case in cases for hs, tp in case.state.peaks]
+    usual = of_spectra([tp for tp, _ in peaks], pace, [weight for _, weight in peaks])
     low, cutoff = (found if given is None else given for given, found in zip((sweep.low, sweep.cutoff), usual))
     if not cutoff > low:
         raise InputError(source, [Problem("cutoff", f"a number above low, {low:g} Hz", f"{cutoff:g}")])

@@ -21,9 +21,10 @@ from jaxhydro.files import check_folder
 from jaxhydro.platform.schema import builtin_platforms, builtin_text, load_platform
 from jaxhydro.remarks import Remark
 from jaxhydro.sweep.batch import Setup, pace_of_platform, setup_of
-from jaxhydro.sweep.cases import named, plan_of
+from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.local import simulate_locally
 from jaxhydro.sweep.resources import Workload, chosen, supports_of
+from jaxhydro.sweep.sea_states import named
 from jaxhydro.sweep.store import (
     DONE,
     FAILED,
@@ -38,7 +39,7 @@ from jaxhydro.sweep.store import (
     open_results,
 )
 from jaxhydro.sweep.sweep_file import load_sweep
-from jaxhydro.sweep.sweep_remarks import impossible, notes, outside, shares_in_band
+from jaxhydro.sweep.sweep_remarks import impossible, near_limits, notes, outside, shares_in_band
 from jaxhydro.sweep.sweep_schema import Sweep
 from jaxhydro.sweep.worker import RunsDone
 from jaxhydro.sweep.write_sweep import results_of, write_outputs
@@ -146,7 +147,12 @@ def prepared(sweep: Sweep, source: str) -> PreparedSweep:
     supports_of(setup, source)
     shares = shares_in_band(plan)
     known += notes(plan, setup.model, shares, failing)
-    remarks = (*setup.model.remarks, *wave_remarks(setup.model), *outside(plan, setup.model, failing))
+    remarks = (
+        *setup.model.remarks,
+        *wave_remarks(setup.model),
+        *outside(plan, setup.model, failing),
+        *near_limits(plan, setup.model.environment, failing),
+    )
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
     inputs = Inputs(plan, _platform_text(sweep.platform), text)
     return PreparedSweep(inputs, setup, source, sweep.platform, sweep.calibration, shares, known, remarks)

@@ -27,6 +27,7 @@ from jaxhydro.fingerprint import computed_with, content_hash, fingerprint
 from jaxhydro.sweep.batch import CALIBRATION, PLAN, PLATFORM, Setup
 from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.run_statistics import BANDS, STATISTICS, RunResults, frequencies, unit
+from jaxhydro.sweep.sea_states import UNITS
 
 RESULTS, INPUTS, UNFINISHED, LOCK = "results.zarr", "inputs", ".results", ".lock"
 TO_DO, DONE, FAILED = 0, 1, 2
@@ -207,7 +208,7 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, 
     limits = np.full((len(plan.cases), len(channels), len(BANDS), 2), np.nan)
     for i, case in enumerate(plan.cases):
         for j, channel in enumerate(channels):
-            for band, edges in bands_of(channel, case.tp).items():
+            for band, edges in bands_of(channel, case.state.peak_period).items():
                 limits[i, j, BANDS.index(band)] = edges
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of consolidated metadata, which xarray asks for
@@ -218,6 +219,10 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, 
             _coordinate(group, name, ("case",), np.array([getattr(case, name) for case in plan.cases], float), its)
         gamma = np.array([np.nan if case.gamma is None else case.gamma for case in plan.cases])
         _coordinate(group, "gamma", ("case",), gamma, "1")
+        for name, its in UNITS.items():
+            column = np.array([getattr(case, name) for case in plan.cases], float)  # None: NaN
+            if name not in ("hs", "tp") and not np.isnan(column).all():
+                _coordinate(group, name, ("case",), column, its)
         _coordinate(group, "spectrum_share", ("case",), shares, "1")
         _coordinate(group, "unit", ("channel",), [unit(channel) for channel in channels], "")
         _coordinate(group, "band_limits", ("case", "channel", "band", "edge"), limits, "Hz")

@@ -4,15 +4,22 @@ import codecs
 import csv
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from jaxhydro.errors import InputError, Problem, read_yaml, shown, suggest, validate
-from jaxhydro.sweep.sweep_schema import COLUMNS, SeaState, Sweep
+from jaxhydro.sweep.sea_states import UNITS as UNITS_OF_STATES
+from jaxhydro.sweep.sea_states import swell_problems
+from jaxhydro.sweep.sweep_schema import COLUMNS, MAX_SPREADING, SeaState, Sweep
 
 UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # of "Unicode text" of spreadsheets
-UNITS = {"hs": "m", "tp": "s"}  # that a header may state; probability may be in any
-LIMITS = {"hs": (0.0, "a number > 0"), "tp": (0.0, "a number > 0"), "probability": (-1e-300, "a number >= 0")}
+UNITS = {"heading": "deg", **UNITS_OF_STATES}  # that a header may state; probability may be in any
+ABOVE_ZERO, ENHANCEMENT = (5e-324, math.inf, "a number > 0"), (1.0, 7.0, "a number from 1 to 7")
+EXPONENT, ANY = (0.0, MAX_SPREADING, f"a number from 0 to {MAX_SPREADING:g}"), (-math.inf, math.inf, "a number")
+LIMITS = {"hs": ABOVE_ZERO, "tp": ABOVE_ZERO, "probability": (0.0, math.inf, "a number >= 0"), "gamma": ENHANCEMENT}
+LIMITS |= {"heading": ANY, "spreading": EXPONENT, "swell_hs": ABOVE_ZERO, "swell_tp": ABOVE_ZERO}
+LIMITS |= {"swell_gamma": ENHANCEMENT, "swell_heading": ANY, "swell_spreading": EXPONENT}
 
 
 def load_sweep(path: str | Path) -> Sweep:
@@ -34,11 +41,19 @@ def load_sweep(path: str | Path) -> Sweep:
         changed["scatter"] = read_scatter(path.parent / sweep.scatter, f"{path}: scatter")
         if sweep.spectrum != "jonswap" and any(state.gamma is not None for state in changed["scatter"]):
             raise InputError(str(path), [Problem("spectrum", "jonswap, for a table with gamma", sweep.spectrum)])
+        if problems := [in_row(one) for one in sweep.faults_of_states(changed["scatter"])]:
+            raise InputError(f"{path}: scatter: {path.parent / sweep.scatter}", problems)
     if (near := path.parent / sweep.platform).is_file():
         changed["platform"] = str(near)
     if sweep.calibration is not None:
         changed["calibration"] = str(path.parent / sweep.calibration)
     return sweep.model_copy(update=changed)
+
+
+def in_row(problem: Problem) -> Problem:
+    """A problem at `[2].heading` as one of row 3, column heading."""
+    number, _, key = problem.where.removeprefix("[").partition("].")
+    return replace(problem, where=f"row {int(number) + 1}, column {key}")
 
 
 def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
@@ -78,7 +93,7 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
     for head, name in zip(heads, names):
         if name not in COLUMNS or names.count(name) > 1:
             found = shown(head) if name not in COLUMNS else f"{name} twice"
-            units = "Hs in m, Tp in s" if re.match(r"(hs|tp)\b", name) else ""
+            units = "Hs in m, Tp in s" if re.match(r"(swell_)?(hs|tp)\b", name) else ""
             hint = units or suggest(name, COLUMNS)
             problems.append(Problem(where, f"columns among {', '.join(COLUMNS)}", found, hint))
     missing = [name for name in COLUMNS[:3] if name not in names]
@@ -93,17 +108,18 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
             continue
         values = {}
         for head, name, cell in zip(heads, names, row):
-            if name == "gamma" and not cell.strip():
+            if name not in COLUMNS[:3] and not cell.strip():
                 continue
             if commas and "." in cell:  # of thousands, perhaps
                 expected = "a number with a decimal comma, as others in the file, and no point"
                 problems.append(Problem(f"line {number}, column {head}", expected, shown(cell.strip())))
                 continue
             value = _number(cell.replace(",", ".") if commas else cell)
-            above, expected = LIMITS.get(name, (-math.inf, "a number from 1 to 7"))
-            if not value > above or (name == "gamma" and not 1 <= value <= 7):
+            least, most, expected = LIMITS[name]
+            if not least <= value <= most:
                 problems.append(Problem(f"line {number}, column {head}", expected, shown(cell.strip())))
             values[name] = value
+        problems += [replace(one, where=f"line {number}, column {one.where}") for one in swell_problems(values)]
         if not problems:
             states.append(SeaState(**values))
     if problems:

@@ -9,11 +9,14 @@ from jaxtyping import Float
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.sea_of_request import NOTED_SHARE, usual_cutoff
 from jaxhydro.dynamics.table_ranges import TableRange, table_ranges
+from jaxhydro.environment import Environment
 from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.remarks import Remark
 from jaxhydro.sweep.batch import Setup, failure_reason, sea_of
-from jaxhydro.sweep.cases import Plan, Run, State, named
+from jaxhydro.sweep.cases import Plan, Run
+from jaxhydro.sweep.sea_states import State, named
 from jaxhydro.waves.irregular import harmonics, repeat_period
+from jaxhydro.waves.sea_limits import LIMITS
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
 
 STATES_IN_MEMORY = 256  # sea states whose spectra are in memory
@@ -25,7 +28,7 @@ def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
     It is the variance from `low` to `cutoff`, on the frequencies of the seas, over Hs²/16.
     """
     step = 2 * np.pi / repeat_period(plan.duration)
-    found = {state: float(density.sum()) * step / (state[0] ** 2 / 16) for state, _, density in _spectra(plan)}
+    found = {state: float(density.sum()) * step / (state.height**2 / 16) for state, _, density in _spectra(plan)}
     return np.array([found[case.state] for case in plan.cases])
 
 
@@ -43,7 +46,10 @@ def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float
             density = jonswap(omega, hs, tp, jnp.where(jnp.isnan(asked), peak_enhancement(hs, tp), asked))
         else:
             density = pierson_moskowitz(omega, hs, tp)
-        yield from zip(some, [np.asarray(omega)] * len(some), np.asarray(density))
+        shape = plan.spectrum.replace("_", "-")
+        for state, sea in zip(some, np.asarray(density)):
+            swell = state.systems(0.0, shape, None)[1:]
+            yield state, np.asarray(omega), sum((np.asarray(one.density(omega)) for one in swell), sea)
 
 
 def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Remark]:
@@ -62,6 +68,22 @@ def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Rem
             state = max(said, key=found.__getitem__)
             others = f" (so or less {_in(len(said), len(found))})" if len(found) > 1 else ""
             yield said[state]._replace(text=said[state].text + others)
+
+
+def near_limits(plan: Plan, environment: Environment, failing: dict[State, str]) -> Iterator[Remark]:
+    """Remarks on sea states near the limits of wave theory, each for the steepest sea state that it is about."""
+    states = [state for state in dict.fromkeys(case.state for case in plan.cases) if state not in failing]
+    states.sort(key=lambda state: state.height / state.peak_period**2, reverse=True)
+    for limit in LIMITS:
+        said = {
+            state: remark
+            for state in states
+            if (remark := limit(state.height, period := state.peak_period, environment, plan.order, plan.duration / period))
+        }
+        if said:
+            state, remark = next(iter(said.items()))
+            others = f" (so {_in(len(said), len(states))})" if len(states) > 1 else ""
+            yield remark._replace(text=f"{named(state)}: {remark.text}{others}")
 
 
 def impossible(setup: Setup) -> dict[State, str]:
@@ -107,13 +129,13 @@ def _of_band(seas: dict[State, float], total: int, plan: Plan) -> Iterator[str]:
         yield (
             f"{_in(len(cut), total)} less than {NOTED_SHARE:.0%} of the spectrum lies from {plan.low:g} to {plan.cutoff:g} Hz, "
             f"and the rest is left out; least in {named(state)}, {cut[state]:.1%} or "
-            f"Hs {state[0] * cut[state] ** 0.5:.3g} m: see low and cutoff"
+            f"Hs {state.height * cut[state] ** 0.5:.3g} m: see low and cutoff"
         )
 
 
 def _of_height(seas: dict[State, float], total: int, plan: Plan, model: Model) -> Iterator[str]:
     gravity = float(model.environment.gravity)
-    usual = {state: usual_cutoff(state[0] * share**0.5, gravity) for state, share in seas.items()}
+    usual = {state: usual_cutoff(state.height * share**0.5, gravity) for state, share in seas.items()}
     if plan.order == 2 and (high := {state: one for state, one in usual.items() if one < plan.cutoff}):
         state = min(high, key=high.__getitem__)
         yield (

@@ -37,6 +37,12 @@ class Failure(ResultModel):
         hs: Significant wave height (m).
         tp: Peak period (s).
         gamma: Peak enhancement (-), or None.
+        spreading: As in `State`, and so are the fields of the swell.
+        swell_hs: Significant wave height of the swell (m).
+        swell_tp: Peak period of the swell (s).
+        swell_gamma: Peak enhancement of the swell (-).
+        swell_heading: Direction that the swell travels to (deg).
+        swell_spreading: Exponent s of the swell (-).
         headings: Headings (deg) of these runs.
         seeds: Seeds of these runs.
         runs: Number of runs.
@@ -46,6 +52,12 @@ class Failure(ResultModel):
     hs: Number
     tp: Number
     gamma: Number | None = None
+    spreading: Number | None = None
+    swell_hs: Number | None = None
+    swell_tp: Number | None = None
+    swell_gamma: Number | None = None
+    swell_heading: Number | None = None
+    swell_spreading: Number | None = None
     headings: list[Number]
     seeds: list[int]
     runs: int

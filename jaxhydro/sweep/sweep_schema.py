@@ -1,6 +1,7 @@
 """Schema of the sweep file: checked, plain values in s, Hz, m and degrees."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -8,14 +9,17 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, usual_transient
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import Consistent, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
+from jaxhydro.sweep.sea_states import OF_SWELL, swell_problems, table_problems
 from jaxhydro.waves.sea import Stretching
 
 Gamma = Annotated[float, Field(strict=True, ge=1, le=7)]
 Seed = Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)]
 Exponent = Annotated[float, Field(strict=True, ge=1, le=20)]
+MAX_SPREADING = 1e4  # exponent s, as in `jaxhydro simulate`
+Spreading = Annotated[float, Field(strict=True, ge=0, le=MAX_SPREADING)]
 Dof: TypeAlias = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 MAX_SAMPLES = 5_000_000  # samples of a run
-COLUMNS = ("hs", "tp", "probability", "gamma")  # of a scatter table
+COLUMNS = ("hs", "tp", "probability", "gamma", "heading", "spreading", *OF_SWELL)  # of a scatter table
 
 
 class SeaState(Schema):
@@ -26,12 +30,32 @@ class SeaState(Schema):
         tp: Peak period (s).
         probability: Share of the time, in any unit.
         gamma: JONSWAP's peak enhancement (-); None: IEC's.
+        heading: Direction that the waves travel to (deg); None: the headings of the sweep.
+        spreading: Exponent s of the wind sea (-); None: that of the sweep.
+        swell_hs: Significant wave height of a swell beside it (m); None: no swell.
+        swell_tp: Peak period of the swell (s).
+        swell_gamma: Peak enhancement of the swell (-); None: IEC's.
+        swell_heading: Direction that the swell travels to (deg); None: that of the wind sea.
+        swell_spreading: Exponent s of the swell (-); None: long-crested.
     """
 
     hs: Positive
     tp: Positive
     probability: NonNegative = 1.0
     gamma: Gamma | None = None
+    heading: Number | None = None
+    spreading: Spreading | None = None
+    swell_hs: Positive | None = None
+    swell_tp: Positive | None = None
+    swell_gamma: Gamma | None = None
+    swell_heading: Number | None = None
+    swell_spreading: Spreading | None = None
+
+    @model_validator(mode="after")
+    def _swell_is_whole(self) -> Self:
+        if problems := list(swell_problems(self.model_dump())):
+            raise Faults(*problems)
+        return self
 
 
 class Grid(Schema):
@@ -148,10 +172,9 @@ class Sweep(Consistent):
         if left < MIN_SAMPLES:
             expected = f"{MIN_SAMPLES} samples or more after the transient of {self.start:g} s"
             yield Problem("duration", expected, f"{left:.0f} of them {self.time_step:g} s apart")
-        if self.spectrum != "jonswap" and not isinstance(self.scatter, str | Grid):
-            for i, state in enumerate(self.scatter):
-                if state.gamma is not None:
-                    yield Problem(f"scatter[{i}].gamma", "a JONSWAP spectrum with it", self.spectrum)
+        if not isinstance(self.scatter, str | Grid):
+            for problem in self.faults_of_states(self.scatter):
+                yield replace(problem, where=f"scatter{problem.where}")
         turns = [one.heading % 360 for one in self.towards]
         if twice := [one for i, one in enumerate(turns) if one in turns[:i]]:
             yield Problem("headings", "each one once", f"{twice[0]:g} deg twice")
@@ -163,6 +186,11 @@ class Sweep(Consistent):
             if isinstance(values, tuple) and len(set(values)) < len(values):
                 twice = next(value for i, value in enumerate(values) if value in values[:i])
                 yield Problem(key, "each one once", f"{twice!r} twice")
+
+    def faults_of_states(self, states: tuple[SeaState, ...]) -> Iterator[Problem]:
+        """What is wrong with the sea states of this sweep; `where` begins with their number in brackets."""
+        headings = [one.heading for one in self.towards] if "headings" in self.model_fields_set else None
+        yield from table_problems(states, self.spectrum, self.order, headings)
 
     @property
     def towards(self) -> tuple[Heading, ...]:

@@ -12,9 +12,9 @@ import jaxhydro
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.plots.style import save, style
-from jaxhydro.result_model import finite_or_null
-from jaxhydro.sweep.cases import State
+from jaxhydro.result_model import finite_or_null, stated
 from jaxhydro.sweep.lifetime import lifetime
+from jaxhydro.sweep.sea_states import State
 from jaxhydro.sweep.store import DONE, FAILED
 from jaxhydro.sweep.sweep_figures import exceedance_figure, scatter_figure
 from jaxhydro.sweep.sweep_results import Failure, Heading, LifetimeStatistics, RunCounts, SweepOptions, SweepResults
@@ -74,13 +74,14 @@ def _failures(data: xr.Dataset) -> list[Failure]:
         key = states[row], str(reasons[row, column])
         alike.setdefault(key, []).append((float(headings[row]), int(seeds[column])))
     found = []
-    for ((hs, tp, gamma), reason), runs in alike.items():
+    for (state, reason), runs in alike.items():
         towards, drawn = zip(*runs)
         found.append(
             Failure(
-                hs=hs,
-                tp=tp,
-                gamma=gamma,
+                hs=state.hs,
+                tp=state.tp,
+                gamma=state.gamma,
+                **stated(**dict(zip(State._fields[3:], state[3:]))),
                 headings=sorted(set(towards)),
                 seeds=sorted(set(drawn)),
                 runs=len(runs),
@@ -92,8 +93,9 @@ def _failures(data: xr.Dataset) -> list[Failure]:
 
 def _states(data: xr.Dataset) -> list[State]:
     """Sea state of every case."""
-    columns = (data[name].values.tolist() for name in ("hs", "tp", "gamma"))
-    return [(hs, tp, None if math.isnan(gamma) else gamma) for hs, tp, gamma in zip(*columns)]
+    names = [name for name in State._fields if name in data]
+    rows = zip(*(data[name].values.tolist() for name in names))
+    return [State(**{name: None if math.isnan(value) else value for name, value in zip(names, row)}) for row in rows]
 
 
 def write_outputs(folder: Path, data: xr.Dataset, found: SweepResults) -> None:

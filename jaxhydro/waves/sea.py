@@ -15,7 +15,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
-from jaxhydro.waves.components import PlaneWaves, components
+from jaxhydro.waves.components import PlaneWaves
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.directional_transfer import AnyTransfer
 from jaxhydro.waves.excitation import AnyExcitation
@@ -142,7 +142,7 @@ class WaveSea(AbstractSea):
         check(stretching=(self.stretching, get_args(Stretching)))
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
-        level, above = stretched(self, self.stretching, time, points, self.environment.depth)
+        level, above = self.levels(time, points)
         found = self._of(self.waves, time, points, level, above, cylinders)
         if self.bound is None:
             return found
@@ -155,6 +155,12 @@ class WaveSea(AbstractSea):
                 *(None if x is None else jnp.zeros_like(x) for x in (other.diffracted, other.tuned)),
             )
         return jax.tree.map(jnp.add, found, other)
+
+    def levels(
+        self, time: Float[Array, ""], points: Float[Array, "3 n"]
+    ) -> tuple[Float[Array, " n"], Float[Array, " n"] | None]:
+        """Levels at which the profiles of the flow are read, as `stretched` gives them."""
+        return stretched(self, self.stretching, time, points, self.environment.depth)
 
     def _of(self, waves: PlaneWaves, time, points, level, above, cylinders: Cylinders | None) -> Flow:
         square = (waves.vector**2).sum(axis=0)
@@ -279,43 +285,3 @@ def profiles(
     down, up = jnp.exp(k * z), jnp.exp(-k * (z + 2 * depth))
     scale = 1 / (1 + jnp.exp(-2 * k * depth))
     return (down + up) * scale, (down - up) * scale
-
-
-def regular_wave(
-    height: float,
-    period: float,
-    environment: Environment,
-    *,
-    heading: float = 0.0,
-    phase: float = 0.0,
-    ramp: float = 0.0,
-    stretching: Stretching = "vertical",
-) -> WaveSea:
-    """Regular wave of first order.
-
-    Args:
-        height: Height from trough to crest (m).
-        period: Period (s).
-        environment: Water depth and gravity.
-        heading: Direction that the wave travels to (rad).
-        phase: Phase (rad).
-        ramp: Time (s) over which the wave grows from rest.
-        stretching: Kinematics above still water, as in `WaveSea`.
-
-    Returns:
-        The sea.
-
-    Raises:
-        ValueError: Period or height is out of range, or the wave would break: H k / (2 tanh kh) > 0.142 pi.
-
-    References:
-        Miche (1944), breaking limit.
-    """
-    if not (period > 0 and height >= 0):
-        raise ValueError(f"a regular wave needs period > 0 s and height >= 0 m, found {period} s and {height} m")
-    one = components(jnp.array([0.5 * height]), jnp.array([2 * math.pi / period]), environment, heading=heading, phase=phase)
-    k = float(one.wavenumber[0])
-    limit = 0.142 * 2 * math.pi / k * math.tanh(k * float(environment.depth))
-    if height > limit:
-        raise ValueError(f"a wave of period {period:g} s breaks above a height of {limit:.3g} m, found {height:g} m")
-    return WaveSea(PlaneWaves.free(one, environment), environment, ramp, stretching)

@@ -1,8 +1,16 @@
 """Remarks on seas near the limits of wave theory: numbers worked out by hand from the deep- and shallow-water limits."""
 
+from types import SimpleNamespace
+
 import pytest
 
+from jaxhydro.cli.sea_command import _limits
 from jaxhydro.environment import Environment
+from jaxhydro.errors import validate
+from jaxhydro.sweep.cases import plan_of
+from jaxhydro.sweep.sweep_remarks import near_limits
+from jaxhydro.sweep.sweep_schema import Sweep
+from jaxhydro.waves.directional_spectrum import WaveSystem
 from jaxhydro.waves.sea_limits import sea_limits
 
 DEEP, SHALLOW = Environment(1025.0, 2000.0, 9.81), Environment(1025.0, 10.0, 9.81)
@@ -36,3 +44,21 @@ def test_second_order_is_wrong_in_shallow_water() -> None:
     assert second.warning and "bound waves of second order are too high" in second.text
     assert not first.warning and "linear theory" in first.text
     assert sea_limits(0.9, 20.0, SHALLOW, 2, 100.0) == []
+
+
+def test_a_stream_function_is_not_limited_by_the_ursell_number() -> None:
+    assert sea_limits(1.3, 20.0, SHALLOW, 5) == []
+
+
+def test_a_sweep_and_a_low_swell_are_told() -> None:
+    """Of a sweep the steepest sea state; beside a higher wind sea the swell that is too long for the depth."""
+    rows = [{"hs": 6.5, "tp": 9.0}, {"hs": 2.0, "tp": 6.0}, {"hs": 6.2, "tp": 12.0}]
+    plan, _ = plan_of(validate(Sweep, {"platform": "oc3-hywind", "scatter": rows, "order": 1}, "sweep"), "sweep")
+    found = {one.text: one.warning for one in near_limits(plan, SHALLOW, {})}
+    depth, highest, ursell = found
+    assert "Hs 6.5 m, Tp 9 s: the significant height, 6.5 m, is 0.65 of the depth" in depth and "in 2 of 3 sea states" in depth
+    assert "would break" in highest and "the Ursell number is" in ursell and list(found.values()) == [True, False, False]
+    about = {"significant_wave_height": 3.2, "peak_period": 6.0}
+    systems = (WaveSystem(3.0, 6.0), WaveSystem(1.2, 20.0))
+    (remark,) = (one for one in _limits(SimpleNamespace(environment=SHALLOW), about, 600.0, 1, systems) if "Ursell" in one.text)
+    assert remark.text.startswith("of the system of Tp 20 s the Ursell number is")

@@ -65,8 +65,5 @@ def sea_items(file: KeyedFile) -> Iterator[ConvertedItem]:
         yield item("WaveDirMod", Treatment.LEFT_OUT, "Waves come from one direction here.")
     if file.whole("ConstWaveMod", 0):
         yield item("ConstWaveMod", Treatment.LEFT_OUT, "Constrained waves have no counterpart.")
-    if file.whole("CurrMod", 0):
-        text = "`water.current` of the platform file takes one: not filled in from the deck."
-        yield item("CurrMod", Treatment.LEFT_OUT, text)
     if file.has("MCFD") and file.number("MCFD"):
         yield item("MCFD", Treatment.APPROXIMATED, "Every member with MCF diffracts with its own diameter.")

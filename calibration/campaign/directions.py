@@ -1,0 +1,69 @@
+"""Directions of the waves of a test whose elevation was measured by one gauge, from the directional spectrum that is stated."""
+
+import dataclasses
+import math
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from calibration.campaign.stated_sea import Sea
+from jaxhydro.waves.components import Components
+from jaxhydro.waves.directional_spectrum import SystemsSpectrum, WaveSystem
+from jaxhydro.waves.spreading import equal_energy_shares, spread_angle
+
+
+@dataclass(frozen=True)
+class StatedDirections:
+    """Directions of the waves of a short-crested sea, or of several wave systems. At full scale.
+
+    One gauge does not tell directions. They are drawn, one for each frequency component, from the stated directional spectrum.
+    Amplitude and phase of each component are those of the record at the gauge. So the sea is the record at the gauge. Elsewhere
+    it is one of many that have this record and this directional spectrum.
+
+    Attributes:
+        heading: Mean direction that the waves travel to (rad).
+        spreading: Exponent s of `spectra.spreading` (-); None: `systems`, or long-crested.
+        systems: Wave systems; empty: one, with the record's own spectrum.
+        seed: Seed of the random directions.
+
+    References:
+        Jefferys (1987), Applied Ocean Research 9, 237-244, on one direction per frequency.
+    """
+
+    heading: float
+    spreading: float | None
+    systems: tuple[WaveSystem, ...]
+    seed: int
+
+    def headings(self, waves: Components) -> Float[np.ndarray, " w"]:
+        """Directions (rad) of components on successive harmonics, (w,)."""
+        shares = equal_energy_shares(*waves.harmonics, self.seed)
+        if self.systems:
+            return SystemsSpectrum(self.systems).headings(np.asarray(waves.omega), shares)
+        if self.spreading is None:
+            return np.full(shares.shape, self.heading)
+        return self.heading + spread_angle(self.spreading, shares)
+
+    def turned(self, waves: Components, position: tuple[float, float]) -> Components:
+        """The waves in these directions, with the elevation at a gauge unchanged.
+
+        Args:
+            waves: First-order components of the record.
+            position: Position of the gauge (m).
+        """
+        turned = dataclasses.replace(waves, heading=jnp.asarray(self.headings(waves)))
+        there = jnp.asarray(position, float)
+        return dataclasses.replace(turned, phase=waves.phase + there @ (turned.vector() - waves.vector()))
+
+
+def stated_directions(sea: Sea, scale: float) -> StatedDirections | None:
+    """Directions that a test states, at full scale; None for long-crested waves."""
+    if sea.long_crested:
+        return None
+    systems = tuple(
+        WaveSystem(one.hs * scale, one.tp * math.sqrt(scale), one.gamma, one.heading, one.spreading, one.spectrum)
+        for one in sea.systems
+    )
+    return StatedDirections(math.radians(sea.mean_heading), sea.spreading, systems, sea.seed)

@@ -1,0 +1,55 @@
+"""Schema of the directions of a test's waves: heading, spreading, or wave systems."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from jaxhydro.errors import Faults, Number, Positive, Problem, Schema, shown
+
+Spreading = Annotated[float, Field(strict=True, ge=0, le=1e4)]
+
+
+class System(Schema):
+    """A wave system of a sea, wind sea or swell, with the keys of `jaxhydro simulate --sea`; m and s as in the files."""
+
+    hs: Positive
+    tp: Positive
+    gamma: Annotated[float, Field(strict=True, ge=1, le=7)] | None = None
+    heading: Number = 0.0
+    spreading: Spreading | None = None
+    spectrum: Literal["jonswap", "pierson-moskowitz"] = "jonswap"
+
+
+class Sea(Schema):
+    """Directions of a test's waves.
+
+    Attributes:
+        heading: Direction that they travel to (deg): 0 is along +x.
+        spreading: Exponent s of a short-crested sea (-); None: long-crested.
+        systems: Wave systems with their own headings, in place of both; empty: one.
+        seed: Seed of the random directions of a sea of several headings.
+    """
+
+    heading: Number = 0.0
+    spreading: Spreading | None = None
+    systems: tuple[System, ...] = ()
+    seed: Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)] = 0
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> Sea:
+        if self.systems and (stated := sorted(self.model_fields_set & {"heading", "spreading"})):
+            raise Faults(*(Problem(key, "nothing, since systems have their own", shown(getattr(self, key))) for key in stated))
+        return self
+
+    @property
+    def long_crested(self) -> bool:
+        """Whether all waves travel one way."""
+        headings = {one.heading % 360 for one in self.systems}
+        return self.spreading is None and len(headings) < 2 and all(one.spreading is None for one in self.systems)
+
+    @property
+    def mean_heading(self) -> float:
+        """Heading of the sea, or of its highest system (deg)."""
+        return max(self.systems, key=lambda one: one.hs).heading if self.systems else self.heading

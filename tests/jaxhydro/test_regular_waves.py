@@ -1,0 +1,169 @@
+"""Regular waves of second order against closed forms, and stream-function waves against raschii and the lower orders."""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import jaxhydro as jh
+from jaxhydro.waves import regular_waves as module
+from jaxhydro.waves.components import components
+from jaxhydro.waves.regular_waves import regular_wave, series_remarks
+from jaxhydro.waves.stream_function import HINT, SteepWave, StreamFunction, stream_function
+
+RASCHII = json.loads((Path(__file__).parents[1] / "data" / "stream-function-raschii.json").read_text())["waves"]
+HEIGHT, PERIOD, WATER = 2.5, 9.0, jh.Environment(1025.0, 18.0, 9.81)
+
+
+def at(sea, time, x, z):
+    """Elevation (m), velocity (m/s), acceleration (m/s2) and pressure over density at points of a vertical plane."""
+    points = jnp.stack([jnp.asarray(x, float), jnp.zeros(len(x)), jnp.asarray(z, float)])
+    flow = sea.flow(jnp.asarray(time), points)
+    return sea.elevation(jnp.asarray(time), points[:2]), flow.velocity[::2], flow.acceleration[::2], flow.pressure
+
+
+def test_second_order_is_stokes_closed_form() -> None:
+    """Elevation, velocity, acceleration and pressure of the equations that the docstring cites, written out."""
+    sea, first = regular_wave(HEIGHT, PERIOD, WATER, order=2), regular_wave(HEIGHT, PERIOD, WATER)
+    omega, k, h = 2 * math.pi / PERIOD, float(first.waves.vector[0, 0]), float(WATER.depth)
+    x, z, time = np.array([0.0, 11.0, -35.0]), np.array([-1.0, -6.0, -18.0]), 1.7
+    theta, t = k * x - omega * time, math.tanh(k * h)
+    eta, velocity, acceleration, pressure = (np.asarray(b - a) for a, b in zip(at(first, time, x, z), at(sea, time, x, z)))
+    scale = 3 / 32 * HEIGHT**2 * omega / math.sinh(k * h) ** 4
+    assert_allclose(eta, HEIGHT**2 * k * (3 - t**2) / (16 * t**3) * np.cos(2 * theta), rtol=1e-9)
+    up, over = np.cosh(2 * k * (z + h)), np.sinh(2 * k * (z + h))
+    assert_allclose(
+        velocity, 2 * k * scale * np.stack([up * np.cos(2 * theta), over * np.sin(2 * theta)]), rtol=1e-9, atol=1e-12
+    )
+    expected = 4 * k * omega * scale * np.stack([up * np.sin(2 * theta), -over * np.cos(2 * theta)])
+    assert_allclose(acceleration, expected, rtol=1e-9, atol=1e-12)
+    assert_allclose(pressure, 2 * omega * scale * up * np.cos(2 * theta), rtol=1e-9)
+
+
+def test_crests_are_higher_and_troughs_flatter_and_the_height_stays() -> None:
+    """Crest less trough is H; the mean is zero; the variance is that of both harmonics."""
+    sea = regular_wave(HEIGHT, PERIOD, WATER, order=2, heading=0.6, phase=0.4)
+    times = np.linspace(0.0, PERIOD, 721)[:-1]
+    eta = np.asarray(jax.vmap(lambda t: sea.elevation(t, jnp.zeros((2, 1)))[0])(jnp.asarray(times)))
+    assert eta.max() - eta.min() == pytest.approx(HEIGHT, rel=1e-4) and eta.max() > -1.1 * eta.min()
+    assert abs(eta.mean()) < 1e-12 and times[np.argmax(eta)] == pytest.approx(PERIOD * (1 - 0.4 / (2 * math.pi)), abs=0.02)
+    second = float(jnp.abs(sea.bound.elevation[0]))
+    assert eta.var() == pytest.approx((HEIGHT / 2) ** 2 / 2 + second**2 / 2, rel=1e-9)
+
+
+def test_an_irregular_sea_of_one_component_is_the_same_wave() -> None:
+    """But for the set-down, which a regular wave's mean level includes."""
+    sea = regular_wave(HEIGHT, PERIOD, WATER, order=2)
+    one = jh.IrregularSea(components(jnp.array([HEIGHT / 2]), jnp.array([2 * math.pi / PERIOD]), WATER, first=1), WATER, 2)
+    points = jnp.array([[0.0, 20.0], [0.0, 5.0], [-2.0, -9.0]])
+    assert_allclose(sea.flow(jnp.array(2.0), points).velocity, one.flow(jnp.array(2.0), points).velocity, atol=1e-12)
+    apart = sea.elevation(jnp.array(2.0), points[:2]) - one.elevation(jnp.array(2.0), points[:2])
+    assert_allclose(apart, apart[0], atol=1e-12)
+
+
+@pytest.fixture
+def coefficients(monkeypatch):
+    """Stream functions from the stored coefficients, so that raschii need not be installed."""
+
+    def stored(height, period, depth, gravity, order):
+        one = next(w for w in RASCHII if (w["height"], w["period"], w["depth"], w["order"]) == (height, period, depth, order))
+        return StreamFunction(one["wavenumber"], np.array(one["E"]), np.array(one["B"]))
+
+    monkeypatch.setattr(module, "stream_function", stored)
+
+
+@pytest.mark.parametrize("one", RASCHII, ids=lambda one: f"{one['height']:g}m-{one['depth']:g}m")
+def test_our_sums_are_raschii_s(coefficients, one) -> None:
+    """Elevation everywhere; velocity and acceleration below the surface, above still water level, too."""
+    water = jh.Environment(1025.0, one["depth"], 9.81)
+    sea = regular_wave(one["height"], one["period"], water, order=one["order"])
+    for i, time in enumerate(one["t"]):
+        eta, velocity, acceleration, _ = (np.asarray(a) for a in at(sea, time, one["x"], one["z"]))
+        assert_allclose(eta, one["eta"][i], atol=1e-7 * one["height"])
+        wet = np.asarray(one["z"]) < eta
+        assert wet.sum() >= 2
+        for mine, other in ((velocity, one["velocity"]), (acceleration, one["acceleration"])):
+            assert_allclose(mine[:, wet], np.asarray(other[i]).T[:, wet], rtol=1e-6, atol=1e-7)
+
+
+def test_a_low_steep_wave_is_stokes_and_airy(coefficients) -> None:
+    """H = 2 m, 10 s, 50 m deep, ka = 0.043: apart by (ka)² relative to the first order, far less than the second is of it."""
+    one = RASCHII[0]
+    water = jh.Environment(1025.0, one["depth"], 9.81)
+    first, second, steep = (regular_wave(one["height"], one["period"], water, order=order) for order in (1, 2, one["order"]))
+    x, z = np.linspace(-40.0, 40.0, 9), np.full(9, -3.0)
+    of_first, of_second, of_steep = (at(sea, 0.7, x, z) for sea in (first, second, steep))
+    ka = one["height"] / 2 * float(first.waves.vector[0, 0])
+    for stokes, exact in zip(of_second, of_steep):
+        size = float(jnp.abs(exact).max())
+        assert float(jnp.abs(stokes - exact).max()) < 2.0 * ka**2 * size
+    assert float(jnp.abs(of_first[0] - of_steep[0]).max()) > 5 * float(jnp.abs(of_second[0] - of_steep[0]).max())
+    assert float(jnp.abs(of_first[0] - of_steep[0]).max()) < 1.2 * ka * float(jnp.abs(of_steep[0]).max())
+
+
+def test_the_flow_of_a_steep_wave_obeys_its_surface_condition(coefficients) -> None:
+    """No water through the surface, w = eta_t + u eta_x, with derivatives by JAX; 12 m in 10 s, 50 m deep."""
+    one = RASCHII[1]
+    sea = regular_wave(one["height"], one["period"], jh.Environment(1025.0, one["depth"], 9.81), order=one["order"])
+
+    def eta(x, time):
+        return sea.elevation(time, jnp.array([[x], [0.0]]))[0]
+
+    for x, time in ((0.0, 0.5), (20.0, 0.5), (-33.0, 2.0)):
+        flow = sea.flow(jnp.array(time), jnp.array([[x], [0.0], [eta(x, time)]]))
+        slope, rise = jax.grad(eta, argnums=(0, 1))(x, time)
+        u, w = float(flow.velocity[0, 0]), float(flow.velocity[2, 0])
+        assert w == pytest.approx(float(rise) + u * float(slope), abs=1e-2)  # of 3.9 m/s
+
+
+def test_a_platform_is_moved_by_steep_waves(coefficients) -> None:
+    """Finite motion, larger crests than troughs in the recorded wave."""
+    one = RASCHII[2]
+    model = jh.load_model("volturnus-s")
+    water = jh.Environment(1025.0, one["depth"], 9.81)
+    sea = regular_wave(one["height"], one["period"], water, order=one["order"], ramp=12.0)
+    assert isinstance(sea, SteepWave)
+    found = jh.simulate(model, np.arange(0.0, 20.0, 1.0), sea, step=0.25)
+    assert np.isfinite(np.asarray(found.position)).all() and float(np.ptp(np.asarray(found["surge"]))) > 0.5
+
+
+def test_a_series_cut_short_is_remarked(coefficients) -> None:
+    one = RASCHII[1]
+    sea = regular_wave(one["height"], one["period"], jh.Environment(1025.0, 50.0, 9.81), order=one["order"])
+    assert series_remarks(sea, one["order"]) == [] and series_remarks(regular_wave(2.0, 9.0, WATER, order=2), 2) == []
+    short = module._steep(StreamFunction(0.05, np.array([1.0, 0.1, 0.02]), np.ones(3)), 0.7, WATER, 0.0, 0.0, 0.0, "vertical")
+    (remark,) = series_remarks(short, 3)
+    assert remark.warning and "the last of 3 harmonics of the elevation has 2.0% of the first" in remark.text
+
+
+def test_what_cannot_be_is_told() -> None:
+    with pytest.raises(ValueError, match="breaks above a height of"):
+        regular_wave(20.0, 8.0, WATER, order=2)
+    with pytest.raises(ValueError, match="breaks above a height of"):
+        regular_wave(20.0, 8.0, WATER, order=7)
+    with pytest.raises(ValueError, match="order of a regular wave is 1 or more, found 0"):
+        regular_wave(2.0, 8.0, WATER, order=0)
+    with pytest.raises(ValueError, match="no stretching by wheeler"):
+        regular_wave(2.0, 8.0, WATER, order=5, stretching="wheeler")
+
+
+def test_without_raschii_a_message_says_what_to_install(monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "raschii", None)
+    with pytest.raises(ImportError) as error:
+        stream_function(2.0, 8.0, 50.0, 9.81, 5)
+    assert str(error.value) == HINT
+
+
+def test_raschii_itself_gives_the_stored_coefficients() -> None:
+    pytest.importorskip("raschii")
+    one = RASCHII[0]
+    found = stream_function(one["height"], one["period"], one["depth"], 9.81, one["order"])
+    assert found.wavenumber == pytest.approx(one["wavenumber"], rel=1e-9)
+    assert_allclose(found.elevation, one["E"], atol=1e-9)
+    assert_allclose(found.potential, one["B"], atol=1e-9)
