@@ -34,7 +34,8 @@ BED_TOLERANCE = 1e-6  # of the depth: what is below the bed by less touches it
 
 class Job(NamedTuple):
     """What every simulation is told: the platform's name, where results go, duration and sampling (s), offset from rest (m,
-    rad), largest step (s; None: chosen), whether figures are drawn, and the file of the calibration."""
+    rad), largest step (s; None: chosen), whether figures are drawn, the file of the calibration, and further formats of the
+    motion."""
 
     platform: str
     out: Path
@@ -44,6 +45,7 @@ class Job(NamedTuple):
     step: float | None
     figures: bool = True
     calibration: str | None = None
+    formats: tuple[str, ...] = ()
 
     @property
     def inputs(self) -> dict[str, float | str | None]:
@@ -136,7 +138,7 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
     if wave is not None:
         inputs |= {"wave_height": wave[0], "wave_period": wave[1], "heading": heading, "ramp": ramp}
     source = f"jaxhydro {jaxhydro.__version__}"
-    write_motion(motion, job.out, job.platform, source, figures=job.figures, hull=model.hull, inputs=inputs)
+    write_motion(motion, job.out, job.platform, source, None, job.figures, model.hull, inputs, job.formats)
     _print_motion(motion, wave, ramp)
     say(f"Results are in {job.out}")
     return True
