@@ -144,6 +144,7 @@ def simulate(
     calibration: arguments.Calibrated = None,
     step: arguments.Step = None,
     figures: arguments.Figures = True,
+    formats: arguments.MotionFormats = None,
 ) -> None:
     """Motions in irregular waves, regular waves and free decays: series, statistics and figures.
 
@@ -153,6 +154,8 @@ def simulate(
     given = sea_options.by_option(ctx.params)
     if sea_options.is_campaign(platform):
         campaign_file(platform)
+        if formats:
+            raise options.wrong("--format", "it goes with a platform; of a campaign all motions are in simulated.nc")
         return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(given), figures)
     options.check_platform(platform)
     offset, regular = options.releases(release or []), options.regular(wave_height, wave_period)
@@ -176,6 +179,7 @@ def simulate(
     one = None if asked is None else asked.heading if asked.long_crested else None  # several are checked with the sea
     model = _model(platform, calibration, diffraction, elements, heading if regular is not None else one)
     job = command.Job(platform, out, duration, dt, offset, step, figures, None if calibration is None else str(calibration))
+    job = job._replace(formats=tuple(one.value for one in formats or ()))
     stretch = sea_options.stretching(given)
     of_regular = (regular, heading, stretch, order or 1)
     if not (command.run(model, job, *of_regular) if asked is None else sea_command.run(model, job, asked)):

@@ -47,6 +47,7 @@ EXAMPLES = "\n\n".join(
         "jaxhydro simulate volturnus-s --wave tank.csv --wave-column probe1 --wave-position -100 0 --out tank",
         "jaxhydro simulate volturnus-s --wave-height 4 --wave-period 10 --out wave",
         "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
+        "jaxhydro simulate volturnus-s --release surge=5 --format netcdf --format outb --out files",
         "jaxhydro simulate my-campaign --calibration results/calibration.json --out seas",
     )
 )
@@ -164,6 +165,13 @@ class DeckFormat(StrEnum):
     openfast = "openfast"
     raft = "raft"
     moordyn = "moordyn"
+
+
+class MotionFormat(StrEnum):
+    """Further file of a simulated motion."""
+
+    netcdf = "netcdf"
+    outb = "outb"
 
 
 class Spectrum(StrEnum):
@@ -346,6 +354,13 @@ Duration = Annotated[
     float | None, typer.Option(help="Simulated time, s.", show_default="600, 3600 in a sea, or all of a record")
 ]
 Dt = Annotated[float, typer.Option("--dt", help="Time between the samples that are written, s.")]
+MotionFormats = Annotated[
+    list[MotionFormat] | None,
+    typer.Option(
+        "--format",
+        help="File of the motion beside motion.csv: motion.nc (CF conventions) or motion.outb (OpenFAST). May be repeated.",
+    ),
+]
 Calibrated = Annotated[
     Path | None,
     typer.Option(

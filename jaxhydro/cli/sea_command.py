@@ -70,7 +70,7 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     results = summary(times[kept], {name: values[kept] for name, values in channels.items()}, about["peak_period"])
     state = SeaState(np.asarray(first_order), target, about, results)
     source = f"jaxhydro {jaxhydro.__version__}"
-    write_motion(motion, job.out, job.platform, source, state, job.figures, model.hull, job.inputs)
+    write_motion(motion, job.out, job.platform, source, state, job.figures, model.hull, job.inputs, job.formats)
     of_statistics, of_bands = tables(results)
     span = f"from {times[kept][0]:g} to {times[-1]:g} s"
     table(f"Statistics, {span}", *of_statistics)

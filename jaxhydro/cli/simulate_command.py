@@ -36,7 +36,8 @@ BED_TOLERANCE = 1e-6  # of the depth: what is below the bed by less touches it
 
 class Job(NamedTuple):
     """What every simulation is told: the platform's name, where results go, duration and sampling (s), offset from rest (m,
-    rad), largest step (s; None: chosen), whether figures are drawn, and the file of the calibration."""
+    rad), largest step (s; None: chosen), whether figures are drawn, the file of the calibration, and further formats of the
+    motion."""
 
     platform: str
     out: Path
@@ -46,6 +47,7 @@ class Job(NamedTuple):
     step: float | None
     figures: bool = True
     calibration: str | None = None
+    formats: tuple[str, ...] = ()
 
     @property
     def inputs(self) -> dict[str, float | str | None]:
@@ -148,7 +150,7 @@ def run(
         inputs |= {"wave_height": wave[0], "wave_period": wave[1], "heading": heading, "ramp": ramp}
         inputs |= {"order": float(order)} if order > 1 else {}
     source = f"jaxhydro {jaxhydro.__version__}"
-    write_motion(motion, job.out, job.platform, source, figures=job.figures, hull=model.hull, inputs=inputs)
+    write_motion(motion, job.out, job.platform, source, None, job.figures, model.hull, inputs, job.formats)
     _print_motion(motion, wave, ramp)
     say(f"Results are in {job.out}")
     return True

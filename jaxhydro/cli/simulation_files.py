@@ -1,7 +1,7 @@
-"""Output files of a simulation: simulated.nc, motion.csv and figures, in m and deg."""
+"""Output files of a simulation: simulated.nc, motion.csv, motion.nc, motion.outb and figures, in m and deg."""
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -9,16 +9,21 @@ import numpy as np
 import xarray as xr
 
 from jaxhydro.analysis.sea_statistics import in_order
+from jaxhydro.display.motion_dataset import motion_dataset
 from jaxhydro.environment import DOFS
 from jaxhydro.files import REPORT_FILE, own_report, staged
 from jaxhydro.hull.hull import Hull
 from jaxhydro.hull.outline import hull_variable
+from jaxhydro.interop.outb_file import write_outb
 from jaxhydro.plots import seas as sea_plot
 from jaxhydro.plots.style import motion_figure, save, style
 from jaxhydro.units import for_people, unit_of
 
 STATISTICS = "statistics.json"
 OF_SEAS = (STATISTICS, "figures/motion.png", "figures/window.png", "figures/spectra.png")
+FORMAT_FILES = {"netcdf": "motion.nc", "outb": "motion.outb"}  # by format, beside motion.csv
+OPENFAST_MOTIONS = [f"Ptfm{dof.capitalize()}" for dof in DOFS]
+OPENFAST_WAVE = "Wave1Elev"
 MAX_PLOTTED_FREQUENCY = 0.2  # Hz, that spectra are drawn to
 
 
@@ -65,6 +70,7 @@ def write_motion(
     figures: bool = True,
     hull: Hull | None = None,
     inputs: Mapping[str, Any] | None = None,
+    formats: Collection[str] = (),
 ) -> None:
     """Write a motion's files into a folder; without `figures` those of an earlier simulation there are taken away.
 
@@ -77,6 +83,7 @@ def write_motion(
         figures: Whether figures are drawn.
         hull: Hull of the model, written for drawings.
         inputs: What was asked for beside the sea, written as attributes; None is left out.
+        formats: Further files of the motion: of `FORMAT_FILES`.
     """
     names = ["time_s", *(f"{dof}_{unit_of(dof)}" for dof in DOFS)]
     columns = [motion.time, *motion.values.T]
@@ -104,10 +111,35 @@ def write_motion(
         np.savetxt(temporary / "motion.csv", rows, fmt="%.9g", delimiter=",", header=header, comments="")
         packed = {name: {"zlib": True, "complevel": 4} for name in data}
         dataset.to_netcdf(temporary / "simulated.nc", engine="h5netcdf", encoding=packed)
+        if "netcdf" in formats:
+            about = {"title": f"Motion of {title}", "source": source, "platform": title, **asked}
+            _write_netcdf(motion, temporary / FORMAT_FILES["netcdf"], about)
+        if "outb" in formats:
+            _write_outb(motion, temporary / FORMAT_FILES["outb"], f"{title}, {source}")
         if sea is not None:
             _statistics(sea, temporary, title, source)
         if figures:
             _draw(motion, sea, temporary, title)
+
+
+def _write_netcdf(motion: Motion, path: Path, about: Mapping[str, Any]) -> None:
+    """Write motion.nc after the CF conventions, a variable for each motion."""
+    moved = dict(zip(DOFS, motion.values.T, strict=True))
+    dataset = motion_dataset(motion.time, moved, motion.wave, about)
+    packed: dict[str, Any] = {str(name): {"zlib": True, "complevel": 4, "_FillValue": None} for name in dataset.variables}
+    dataset.to_netcdf(path, engine="h5netcdf", encoding=packed)
+
+
+def _write_outb(motion: Motion, path: Path, about: str) -> None:
+    """Write motion.outb with the names of ElastoDyn's and SeaState's channels."""
+    names, columns = list(OPENFAST_MOTIONS), list(motion.values.T)
+    units = [unit_of(dof) for dof in DOFS]
+    if motion.wave is not None:
+        names.append(OPENFAST_WAVE)
+        units.append("m")
+        columns.append(motion.wave)
+    interval = (motion.time[-1] - motion.time[0]) / max(1, len(motion.time) - 1)
+    write_outb(path, float(motion.time[0]), float(interval), names, units, np.stack(columns, axis=1), about)
 
 
 def _draw(motion: Motion, sea: SeaState | None, folder: Path, title: str) -> None:
@@ -142,6 +174,8 @@ def _sea_figures(motion: Motion, wave: np.ndarray, sea: SeaState, folder: Path, 
 def _stale(folder: Path, temporary: Path) -> Iterable[str]:
     """What an earlier simulation wrote and the new one does not, and the report of it."""
     if (folder / "motion.csv").is_file():
-        yield from (name for name in OF_SEAS if (folder / name).is_file() and not (temporary / name).exists())
+        yield from (
+            name for name in (*OF_SEAS, *FORMAT_FILES.values()) if (folder / name).is_file() and not (temporary / name).exists()
+        )
         if own_report(folder / REPORT_FILE):
             yield REPORT_FILE

@@ -12,7 +12,9 @@ from jaxtyping import Float
 
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem, shown, suggest
+from jaxhydro.interop.computed_water import density_scale
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
+from jaxhydro.interop.reference_point import rigid_shift
 
 MIN_FREQUENCIES = 4  # frequencies
 HDF5 = b"\x89HDF\r\n\x1a\n"  # how a file of NetCDF-4 begins
@@ -20,7 +22,6 @@ PAIR = ("radiating_dof", "influenced_dof")
 BODY_SEPARATOR = "__"  # a body's name and its motion, in datasets of several bodies: buoy__Heave
 BODY = ("body", "body_name")  # dimensions along which datasets of several bodies may be put together
 MAX_LISTED_FREQUENCIES = 8  # frequencies that a note names
-MAX_WATER_MISMATCH = 1e-3  # of a value, by which water and dataset may differ without a note
 ORIGIN_TOLERANCE = 1e-6  # m
 
 
@@ -44,11 +45,7 @@ class Dataset(NamedTuple):
 
     def scale(self, density: float | None) -> float:
         """Factor from forces in the dataset's water to forces in water of another density (kg/m³)."""
-        own = self.number("rho")
-        if density is None or own is None or abs(density / own - 1) < MAX_WATER_MISMATCH:
-            return 1.0
-        self.notes.append(f"{self.source}: computed for a density of {own:g} kg/m3: forces are scaled to {density:g} kg/m3")
-        return density / own
+        return density_scale(self.source, self.number("rho"), density, self.notes)
 
     def number(self, name: str) -> float | None:
         """Scalar of the dataset; None where it has none."""
@@ -130,7 +127,7 @@ def _bodies(data: Any) -> list[str]:
 def _reference(
     data: Any, wrong: Any, source: str, several: bool, notes: list[str]
 ) -> tuple[Float[np.ndarray, "2"], Float[np.ndarray, "6 6"]]:
-    """`origin` and `shift` of a `Dataset`, by its centre of rotation (Fossen 2011, section 7.3).
+    """`origin` and `shift` of a `Dataset`, by its centre of rotation.
 
     The reference point is the dataset's origin; of one among several bodies it is above or below its own centre.
     """
@@ -143,9 +140,9 @@ def _reference(
     if several and np.abs(centre[:2]).max() > ORIGIN_TOLERANCE:
         origin = centre[:2]
         notes.append(f"{source}: the platform's reference point is at ({origin[0]:g}, {origin[1]:g}, 0) m of the dataset")
-    x, y, z = centre - np.append(origin, 0.0)
-    if np.abs([x, y, z]).max() > ORIGIN_TOLERANCE:
-        shift[:3, 3:] = [[0, z, -y], [-z, 0, x], [y, -x, 0]]
+    point = centre - np.append(origin, 0.0)
+    if np.abs(point).max() > ORIGIN_TOLERANCE:
+        shift = rigid_shift(point)
         there = ", ".join(f"{one:g}" for one in centre)
         notes.append(f"{source}: computed about ({there}) m: moved to the platform's reference point")
     return origin, shift

@@ -11,6 +11,7 @@ from jaxtyping import Complex, Float
 from jaxhydro.environment import STANDARD_GRAVITY
 from jaxhydro.errors import shown
 from jaxhydro.interop.capytaine_radiation import PAIR, Dataset, along_omega, computed, motions, open_capytaine, single
+from jaxhydro.interop.computed_water import water_notes
 from jaxhydro.interop.wamit_hydrostatics import FileHydrostatics
 from jaxhydro.interop.wamit_tables import distinct, same_heading
 from jaxhydro.waves.dispersion import wavenumber
@@ -20,7 +21,6 @@ WHOLE = "excitation_force"
 PARTS = ("Froude_Krylov_force", "diffraction_force")
 REAL, IMAGINARY = "re", "im"  # along the dimension `complex` of files, which NetCDF has no numbers for
 VOLUME = ("disp_volume", "displaced_volume")
-DEEP_WATER_KH = np.pi  # k h from which on the bed does not matter
 INFINITE_DEPTH = 1e5  # m, where the dataset's depth is infinite
 
 
@@ -118,7 +118,7 @@ def _forces(
     kept = np.isin(omega, computed(one, {" + ".join(names): (omega, np.hstack([table[inner] for table in tables]))}))
     if kept.sum() < 2 or (np.diff(omega[kept]) == 0).any():
         raise one.wrong("omega", "two finite frequencies above 0 or more, each once", shown(omega[kept].tolist()))
-    _compare(one, omega[kept], gravity, depth)
+    one.notes.extend(water_notes(one.source, (one.number("g"), _depth(one)), gravity, depth, float(omega[kept][0])))
     scale = one.scale(density)
     forces = [
         scale * one.shift.T @ np.conj(table[inner][kept]).T * _phase(one, omega[kept], heading)
@@ -134,6 +134,13 @@ def _phase(one: Dataset, omega: Float[np.ndarray, " w"], heading: float) -> Comp
     gravity, depth = one.number("g") or STANDARD_GRAVITY, one.number("water_depth") or INFINITE_DEPTH
     k = np.asarray(wavenumber(jnp.asarray(omega), depth, gravity))
     return np.exp(1j * k * (one.origin @ [np.cos(np.radians(heading)), np.sin(np.radians(heading))]))
+
+
+def _depth(one: Dataset) -> float | None:
+    """Depth of the dataset (m), infinite in deep water; None where it does not say."""
+    if "water_depth" not in one.data.variables or one.data["water_depth"].size != 1:
+        return None
+    return float(one.data["water_depth"].values.reshape(()))
 
 
 def _of_heading(one: Dataset, name: str, heading: float) -> Complex[np.ndarray, "w 6"]:
@@ -162,20 +169,6 @@ def _of_heading(one: Dataset, name: str, heading: float) -> Complex[np.ndarray, 
     table = np.zeros((values.sizes[along], 6), complex)
     table[:, rows] = np.asarray(values.transpose(along, "influenced_dof").values)
     return table
-
-
-def _compare(one: Dataset, omega: Float[np.ndarray, " w"], gravity: float | None, depth: float | None) -> None:
-    """Notes where the dataset's gravity and depth are not the platform's, and matter."""
-    own = one.number("g")
-    if gravity is not None and own is not None and abs(own / gravity - 1) > 0.005:
-        one.notes.append(f"{one.source}: computed for a gravity of {own:g} m/s2, the platform has {gravity:g} m/s2")
-    if depth is None or "water_depth" not in one.data.variables or one.data["water_depth"].size != 1:
-        return
-    there = float(one.data["water_depth"].values.reshape(()))
-    shallow = omega[0] ** 2 / (own or 9.81) * min(there, depth) < DEEP_WATER_KH
-    if abs(min(there, 1e9) / depth - 1) > 0.02 and shallow:
-        depths = f"computed for a depth of {there:g} m, the platform has {depth:g} m"
-        one.notes.append(f"{one.source}: {depths}, and its longest waves feel the bed")
 
 
 def read_capytaine_hydrostatics(

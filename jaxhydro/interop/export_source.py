@@ -16,7 +16,7 @@ class PotentialTable:
 
     Attributes:
         path: The file.
-        kind: Its format, `wamit` or `capytaine`.
+        kind: Its format, `wamit`, `capytaine` or `nemoh`.
         by: What its first column is; `period` is that of OpenFAST.
         length: ULEN, m.
         body: Number or name of one of several bodies, or None.

@@ -11,6 +11,7 @@ from jaxtyping import Float
 from jaxhydro.interop import wamit_drift, wamit_excitation
 from jaxhydro.interop.capytaine_radiation import open_capytaine
 from jaxhydro.interop.capytaine_waves import capytaine_headings
+from jaxhydro.interop.nemoh_tables import nemoh_headings
 from jaxhydro.interop.wamit_tables import headings_in, table_of
 from jaxhydro.waves.heading_interpolation import HeadingInterpolation
 
@@ -22,7 +23,7 @@ def table_headings(
 
     Args:
         path: The file.
-        kind: "wamit" for `.3`, "wamit drift" for `.12d`, "capytaine" for a dataset.
+        kind: "wamit" for `.3`, "wamit drift" for `.12d`, "capytaine" for a dataset, "nemoh" for its .tec file.
         by: What the first column of a WAMIT file is: "period" (s), "rad/s" or "Hz".
         body: Number or name of the body, where the file has several.
 
@@ -54,6 +55,8 @@ def _found(path: str, stamp: int, kind: str, by: str, body: int | str | None) ->
         assert not isinstance(body, int)
         return capytaine_headings(open_capytaine(path, (), body))
     assert not isinstance(body, str)
+    if kind == "nemoh":
+        return nemoh_headings(path)
     if kind == "wamit":
         rows = table_of(path, ".3", wamit_excitation.COLUMNS, slice(0, 1), 2, by, body)
         return headings_in(rows, slice(1, 2))

@@ -10,6 +10,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.capytaine_waves import read_capytaine_hydrostatics
+from jaxhydro.interop.nemoh_hydrostatics import read_nemoh_hydrostatics
 from jaxhydro.interop.wamit_hydrostatics import FileHydrostatics, read_hydrostatics
 from jaxhydro.loads import Buoyancy, HydrostaticCoupling
 from jaxhydro.platform import schema as schema
@@ -47,6 +48,8 @@ def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> FileS
         found = read_hydrostatics(
             declared.file, water.density, water.gravity, length=declared.length or 1.0, body=declared.body
         )
+    elif declared.kind == "nemoh":
+        found = read_nemoh_hydrostatics(declared.file, density=water.density, gravity=water.gravity, notes=notes)
     else:
         assert not isinstance(declared.body, int)
         found = read_capytaine_hydrostatics(

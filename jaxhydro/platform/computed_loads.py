@@ -10,6 +10,7 @@ import numpy as np
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.capytaine_radiation import read_capytaine
 from jaxhydro.interop.capytaine_waves import read_capytaine_directions, read_capytaine_excitation
+from jaxhydro.interop.nemoh_tables import read_nemoh_directions, read_nemoh_excitation, read_nemoh_radiation
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 from jaxhydro.interop.retardation import Realisation, realise
 from jaxhydro.interop.wamit_drift import read_directional_transfer, read_transfer
@@ -65,6 +66,9 @@ def _realised(declared: schema.Radiation, stamp: int, density: float) -> Realise
     if declared.kind == "wamit":
         assert not isinstance(declared.body, str)
         found = read_wamit(source, density, declared.length or 1.0, declared.by, declared.body)
+    elif declared.kind == "nemoh":
+        assert not isinstance(declared.body, str)
+        found = read_nemoh_radiation(source, body=declared.body, density=density, notes=notes)
     else:
         assert not isinstance(declared.body, int)
         found = read_capytaine(source, body=declared.body, density=density, notes=notes)
@@ -111,9 +115,16 @@ def excitation_of(
             table = read_excitation(*fluid, heading=declared.heading, **wamit)
         if declared.body is not None:
             notes.append(f"{declared.file}: phases of body {declared.body} are those of waves at the file's own origin")
+    elif declared.kind == "nemoh":
+        assert not isinstance(declared.body, str)
+        own: Any = {"body": declared.body, "density": water.density, "gravity": water.gravity, "depth": water.depth}
+        if declared.heading is None:
+            table = _simplest(read_nemoh_directions(declared.file, notes=notes, **own))
+        else:
+            table = read_nemoh_excitation(declared.file, heading=declared.heading, notes=notes, **own)
     else:
         assert not isinstance(declared.body, int)
-        own: Any = {"body": declared.body, "density": water.density, "gravity": water.gravity, "depth": water.depth}
+        own = {"body": declared.body, "density": water.density, "gravity": water.gravity, "depth": water.depth}
         if declared.heading is None:
             table = _simplest(read_capytaine_directions(declared.file, notes=notes, **own))
         else:

@@ -212,21 +212,21 @@ class StiffnessMatrix(Schema):
         return self.stiffness.matrix() if isinstance(self.stiffness, Entries) else np.array(self.stiffness)
 
 
-Body = Annotated[Count | Text, Field(description="a body's name, or in WAMIT's files its number from 1")]
+Body = Annotated[Count | Text, Field(description="a body's name, or in files of WAMIT and Nemoh its number from 1")]
 
 
 class FromFile(Schema):
     """Results of another program in a `file` beside the platform file.
 
-    `format` is WAMIT's or Capytaine's, `body` which of several bodies. WAMIT's files have the unit of length `length` (ULEN,
-    m); `by` says what their first column is.
+    `format` is that of WAMIT, Capytaine or Nemoh, `body` which of several bodies. WAMIT's files have the unit of length
+    `length` (ULEN, m); `by` says what their first column is.
     """
 
     endings: ClassVar[dict[str, str]]  # of files, and the format that each means
     wamit_only: ClassVar[tuple[str, ...]] = ("length", "by")
 
     file: Text
-    format: Literal["wamit", "capytaine"] | None = None
+    format: Literal["wamit", "capytaine", "nemoh"] | None = None
     length: Positive | None = None
     body: Body | None = None
 
@@ -240,16 +240,17 @@ class FromFile(Schema):
         if not self.file:
             return self
         if self.kind is None:
-            endings = list(self.endings)
-            said = f"neither {endings[0]} nor {endings[1]}" if len(endings) == 2 else f"none of {', '.join(endings)}"
-            raise Faults(Problem("format", f"wamit or capytaine, as the file's ending is {said}", "nothing"))
-        if self.kind == "capytaine":
+            said = f"none of {', '.join(self.endings)}"
+            raise Faults(Problem("format", f"wamit, capytaine or nemoh, as the file's ending is {said}", "nothing"))
+        program = {"capytaine": "Capytaine", "nemoh": "Nemoh"}.get(self.kind)
+        if program is not None:
             for key in self.wamit_only:
                 if key in self.model_fields_set and (value := getattr(self, key)) is not None:
                     what = "coefficients have dimensions" if key == "length" else "files say it"
-                    raise Faults(Problem(key, f"no {key}, as Capytaine's {what}", shown(value)))
-        if self.body is not None and isinstance(self.body, int) != (self.kind == "wamit"):
-            expected = "a number, as WAMIT's files have no names" if self.kind == "wamit" else "a body's name in quotes"
+                    raise Faults(Problem(key, f"no {key}, as {program}'s {what}", shown(value)))
+        if self.body is not None and isinstance(self.body, int) == (self.kind == "capytaine"):
+            names = f"a number, as {program or 'WAMIT'}'s files have no names"
+            expected = "a body's name in quotes" if self.kind == "capytaine" else names
             raise Faults(Problem("body", expected, shown(self.body)))
         return self
 
@@ -261,7 +262,7 @@ class Hydrostatics(FromFile):
     whether C44 and C55 of a .hst file include it. `linear`: these values alone restore; the members displace nothing.
     """
 
-    endings = {".hst": "wamit", ".out": "wamit", ".nc": "capytaine"}
+    endings = {".hst": "wamit", ".out": "wamit", ".nc": "capytaine", ".dat": "nemoh"}
     wamit_only = ("length", "weight")
 
     file: Literal[""] | Text = ""
@@ -285,6 +286,8 @@ class Hydrostatics(FromFile):
         wanted = [("C33",), ("C44", "C44_buoyancy"), ("C55", "C55_buoyancy")]
         if self.linear and not self.file and (lacking := [keys[0] for keys in wanted if not any(map(self._given, keys))]):
             raise Faults(*(Problem(key, "a value, as the hydrostatics are `linear`", "none") for key in lacking))
+        if self.kind == "nemoh" and self.body is not None:
+            raise Faults(Problem("body", "no body, as KH_0.dat, KH_1.dat ... are of one body each", shown(self.body)))
         if self.weight is not None and Path(self.file).suffix.lower() == ".out":
             raise Faults(Problem("weight", "no weight, as an .out file says where its centre of mass is", shown(self.weight)))
         return self
@@ -294,13 +297,13 @@ class Hydrostatics(FromFile):
 
 
 class Radiation(FromFile):
-    """Radiation damping from another program: WAMIT's `.1` or Capytaine's `.nc`.
+    """Radiation damping from another program: WAMIT's `.1`, Capytaine's `.nc` or Nemoh's `.tec`.
 
     A state space of at most `order` states follows it to `tolerance`. `use`: part of the model, or a candidate of
     `diagnose`.
     """
 
-    endings = {".1": "wamit", ".nc": "capytaine"}
+    endings = {".1": "wamit", ".nc": "capytaine", ".tec": "nemoh"}
 
     by: By = "period"
     tolerance: Annotated[float, Field(strict=True, gt=0, lt=1)] = 0.01
@@ -329,11 +332,11 @@ class Drift(Schema):
 class Excitation(FromFile):
     """First-order wave forces from another program, in place of the strips'.
 
-    The file is WAMIT's `.3` or Capytaine's `.nc`, for waves of a `heading` (deg), or of all headings of the file where none
-    is given. `use`: part of the model, or a candidate of `diagnose`.
+    The file is WAMIT's `.3`, Capytaine's `.nc` or Nemoh's `.tec`, for waves of a `heading` (deg), or of all headings of the
+    file where none is given. `use`: part of the model, or a candidate of `diagnose`.
     """
 
-    endings = {".3": "wamit", ".nc": "capytaine"}
+    endings = {".3": "wamit", ".nc": "capytaine", ".tec": "nemoh"}
 
     by: By = "period"
     heading: Number | None = None

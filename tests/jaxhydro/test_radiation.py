@@ -400,7 +400,10 @@ def test_a_platform_file_names_its_coefficients(tmp_path: Path) -> None:
     ("keys", "words"),
     [
         ({"file": "none.1"}, "none.1: expected a WAMIT .1 file, found no such file"),
-        ({"file": "a.txt"}, "format: expected wamit or capytaine, as the file's ending is neither .1 nor .nc, found nothing"),
+        (
+            {"file": "a.txt"},
+            "format: expected wamit, capytaine or nemoh, as the file's ending is none of .1, .nc, .tec",
+        ),
         ({"file": "hull.nc"}, "radiation.length: expected no length, as Capytaine's coefficients have dimensions, found 2.0"),
         ({"format": "nemoh"}, "radiation.format: expected"),
         ({"fiel": "a"}, "radiation.fiel: expected a known key"),

@@ -497,11 +497,17 @@ def test_polar_columns_that_contradict_are_told(tmp_path: Path) -> None:
         ("excitation: {file: CYLINDER, body: 2}", "excitation.body: expected a body's name in quotes, found 2"),
         ("excitation: {file: hull.3, body: buoy}", "excitation.body: expected a number, as WAMIT's files have no names"),
         ("excitation: {file: hull.3, by: s}", "excitation.by: expected one of period, rad/s, Hz, found 's'"),
-        ("excitation: {file: hull.dat}", "excitation.format: expected wamit or capytaine, as the file's ending is neither"),
+        (
+            "excitation: {file: hull.dat}",
+            "excitation.format: expected wamit, capytaine or nemoh, as the file's ending",
+        ),
         ("hydrostatics: {weight: excluded}", "hydrostatics.weight: expected a `file` with it, found none"),
         ("hydrostatics: {file: a.out, weight: excluded}", "hydrostatics.weight: expected no weight"),
         ("hydrostatics: {file: CYLINDER, length: 2.0}", "hydrostatics.length: expected no length"),
-        ("hydrostatics: {file: hull.stiff}", "hydrostatics.format: expected wamit or capytaine, as the file's ending is"),
+        (
+            "hydrostatics: {file: hull.stiff}",
+            "hydrostatics.format: expected wamit, capytaine or nemoh, as the file's ending",
+        ),
         ("hydrostatics: {file: none.hst}", "none.hst: expected a WAMIT .hst or .out file, found no such file"),
     ],
 )

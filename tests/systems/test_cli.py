@@ -98,9 +98,15 @@ def test_simulate_writes_a_free_decay(tmp_path: Path) -> None:
     assert (tmp_path / "o" / "figures" / "motion.png").stat().st_size > 1000
 
 
+def test_a_campaign_has_no_further_format(tmp_path: Path) -> None:
+    text = run("simulate", small_campaign(tmp_path / "a"), "--format", "outb", status=2)
+    assert "--format: it goes with a platform" in text
+
+
 def test_simulate_in_regular_waves_with_calibrated_values(tmp_path: Path) -> None:
     waves = ["--wave-height", 2, "--wave-period", 9, "--heading", 60, "--duration", 120]
-    text = run("simulate", PLATFORM, *waves, "--out", tmp_path / "a")
+    text = run("simulate", PLATFORM, *waves, "--format", "netcdf", "--format", "outb", "--out", tmp_path / "a")
+    assert {"motion.csv", "motion.nc", "motion.outb"} <= {path.name for path in (tmp_path / "a").iterdir()}
     assert "Amplitude at 9 s" in text and "per m of wave amplitude" in text
     first = pd.read_csv(tmp_path / "a" / "motion.csv")
     assert first.wave_m.abs().max() == pytest.approx(1.0, rel=1e-2)

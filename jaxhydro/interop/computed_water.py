@@ -1,0 +1,48 @@
+"""Notes on water that another program's results were computed for and that is not the platform's."""
+
+import numpy as np
+
+MAX_DENSITY_MISMATCH = 1e-3  # of the density, without a note
+MAX_GRAVITY_MISMATCH = 0.005  # of the gravity, without a note
+MAX_DEPTH_MISMATCH = 0.02  # of the depth, without a note
+DEEP_WATER_KH = np.pi  # k h from which on the bed does not matter
+
+
+def density_scale(source: str, own: float | None, density: float | None, notes: list[str]) -> float:
+    """Factor from forces in a file's water to forces in the platform's; a note is appended where it is not 1.
+
+    Args:
+        source: The file.
+        own: Density of its water (kg/m³); None where it does not say.
+        density: Of the platform's water (kg/m³); None where it is not asked for.
+        notes: Notes.
+    """
+    if density is None or own is None or abs(density / own - 1) < MAX_DENSITY_MISMATCH:
+        return 1.0
+    notes.append(f"{source}: computed for a density of {own:g} kg/m3: forces are scaled to {density:g} kg/m3")
+    return density / own
+
+
+def water_notes(
+    source: str, own: tuple[float | None, float | None], gravity: float | None, depth: float | None, lowest: float
+) -> list[str]:
+    """Notes where gravity and depth are not the platform's, and matter.
+
+    Args:
+        source: The file.
+        own: Its gravity (m/s²) and depth (m); None where it does not say.
+        gravity: Of the platform (m/s²).
+        depth: Of the platform's water (m).
+        lowest: Lowest frequency of the file (rad/s).
+    """
+    own_gravity, own_depth = own
+    notes = []
+    if gravity is not None and own_gravity is not None and abs(own_gravity / gravity - 1) > MAX_GRAVITY_MISMATCH:
+        notes.append(f"{source}: computed for a gravity of {own_gravity:g} m/s2, the platform has {gravity:g} m/s2")
+    if depth is None or own_depth is None:
+        return notes
+    shallow = lowest**2 / (own_gravity or 9.81) * min(own_depth, depth) < DEEP_WATER_KH
+    if abs(min(own_depth, 1e9) / depth - 1) > MAX_DEPTH_MISMATCH and shallow:
+        depths = f"computed for a depth of {own_depth:g} m, the platform has {depth:g} m"
+        notes.append(f"{source}: {depths}, and its longest waves feel the bed")
+    return notes
