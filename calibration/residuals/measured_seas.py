@@ -231,8 +231,8 @@ def seas_of(campaign: Campaign, environment: Environment, options: Options, seve
     spread = [record.id for run in found if run.directions is not None for record in run.records]
     if spread and not several_headings:
         expected = "tests in long-crested waves: seas of several headings can be simulated and compared, not fitted"
-        hint = "Mark such tests `use: ignore`, or state the heading alone."
-        raise InputError(str(campaign.folder / "campaign.yaml"), [Problem("tests", expected, ", ".join(spread), hint)])
+        remedy = "Mark such tests `use: ignore`, or state the heading alone."
+        raise InputError(str(campaign.folder / "campaign.yaml"), [Problem("tests", expected, ", ".join(spread), remedy)])
     made = [(run, sea_of(run, environment, options)) for run in found]
     if made and options.order == 2 and not campaign.manifest.records.model_fields_set:
         hint = second_order_hint([(run, one.sea) for run, one in made], (options.low, options.cutoff))

@@ -95,7 +95,8 @@ def _states(data: xr.Dataset) -> list[State]:
     """Sea state of every case."""
     names = [name for name in State._fields if name in data]
     rows = zip(*(data[name].values.tolist() for name in names))
-    return [State(**{name: None if math.isnan(value) else value for name, value in zip(names, row)}) for row in rows]
+    stated: list[dict[str, Any]] = [{n: None if math.isnan(value) else value for n, value in zip(names, row)} for row in rows]
+    return [State(**one) for one in stated]
 
 
 def write_outputs(folder: Path, data: xr.Dataset, found: SweepResults) -> None:

@@ -104,14 +104,14 @@ def read_current(file: KeyedFile, depth: float) -> tuple[dict[str, Any], list[Co
     heights = _heights(found, depth)
     velocity = found.at(heights, depth)
     levels = [_level(z, *both) for z, both in zip(heights, velocity.T)]
-    current = {"levels": levels}
+    layered: dict[str, Any] = {"levels": levels}
     if not found.sub[0]:
-        return current, item(Treatment.TAKEN, "`water.current` by levels, linear between them as here.")
+        return layered, item(Treatment.TAKEN, "`water.current` by levels, linear between them as here.")
     fine = np.linspace(-depth, 0.0, 4001)
     between = np.stack([np.interp(fine, heights[::-1], row[::-1]) for row in velocity])
     missed = float(np.hypot(*(between - found.at(fine, depth))).max())
     text = f"`water.current` by {len(levels)} levels of the sum of its parts, within {missed:.2g} m/s of it at all depths."
-    return current, item(Treatment.APPROXIMATED, text)
+    return layered, item(Treatment.APPROXIMATED, text)
 
 
 def _heights(found: DeckCurrent, depth: float) -> np.ndarray:
