@@ -405,7 +405,7 @@ def test_a_platform_file_names_its_coefficients(tmp_path: Path) -> None:
             "format: expected wamit, capytaine or nemoh, as the file's ending is none of .1, .nc, .tec",
         ),
         ({"file": "hull.nc"}, "radiation.length: expected no length, as Capytaine's coefficients have dimensions, found 2.0"),
-        ({"format": "nemoh"}, "radiation.format: expected"),
+        ({"format": "aqwa"}, "radiation.format: expected"),
         ({"fiel": "a"}, "radiation.fiel: expected a known key"),
         ({"order": 3}, "radiation.order: expected enough states to follow the coefficients, found a misfit of"),
     ],

@@ -50,7 +50,10 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     "jinja2": {"calibration.report.web_page", "jaxhydro.interop.openfast.export_text"},
 }
 NUMERICS = ("waves", "hull", "loads", "water", "sensors", "integrators", "dynamics")
-NOT_PURE = {"jaxhydro.dynamics.sea_of_request"}  # tells what is wrong with a sea that was asked for
+NOT_PURE = {
+    "jaxhydro.dynamics.sea_of_request",  # tells what is wrong with a sea that was asked for
+    "jaxhydro.waves.stream_function",  # asks raschii for coefficients
+}
 STANDARD = set(sys.stdlib_module_names) - {"csv", "io", "json", "logging", "os", "pathlib", "random", "sys", "warnings"}
 ARRAYS = {"jax", "jaxtyping", "equinox", "diffrax", "optimistix", "lineax", "numpy"}
 
