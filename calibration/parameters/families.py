@@ -13,6 +13,8 @@ def parameter_family(label: str, laws: Collection[str]) -> str:
     if label in laws:
         return "exponent"
     head, _, name = label.rpartition(".")
+    if head.startswith(("tuned_mass_dampers.", "liquid_column_dampers.")):
+        return {"mass": "inertia", "area": "inertia", "period": "restoring"}.get(name, "damping")
     if head == "added_mass" or head.startswith("guided_masses.") or name.startswith("Ca"):
         return "inertia"
     return "damping" if head.endswith("damping") or name == "damping" or name.startswith("Cd") else "restoring"

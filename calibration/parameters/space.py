@@ -22,6 +22,8 @@ NOT_FREE_BY_DEFAULT = (
     "mooring.",
     "stiffness.",
     "guided_masses.",
+    "tuned_mass_dampers.",
+    "liquid_column_dampers.",
     "rotor.",
 )  # what a decay cannot tell from inertia is left alone unless asked for
 

@@ -25,6 +25,8 @@ CAMPAIGN_PARAMETERS = (  # first words of labels of what belongs to the installa
     "static_offset.",
     "mass_properties.",
     "guided_masses.",
+    "tuned_mass_dampers.",
+    "liquid_column_dampers.",
     "rotor.",
     "sensor_reference.",
     "sensor_lag.",

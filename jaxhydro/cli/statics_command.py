@@ -14,8 +14,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.static_forces import LineState, forces_by_load, line_states, mooring_stiffness, offset_curve
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
-from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
-from jaxhydro.loads.mooring_lines import MooringLines
+from jaxhydro.loads.any_lines import AnyLines
 from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import load_platform
@@ -91,7 +90,7 @@ def _print_stiffness(model: Model, position: Float[Array, "6"]) -> None:
     """Stiffness of all loads, and of the moorings alone."""
     heads = ("", *DOFS)
     parts = {"Stiffness at rest (MN/m, MN, MN m)": linearised(model, position)[1]}
-    if any(isinstance(load, MooringLines | CatenaryLines) for load in model.loads):
+    if any(isinstance(load, AnyLines) for load in model.loads):
         parts["Stiffness of the mooring lines alone, earth axes"] = mooring_stiffness(model, position)
     for title, stiffness in parts.items():
         matrix = np.asarray(stiffness) / 1e6

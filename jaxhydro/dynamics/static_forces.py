@@ -14,9 +14,10 @@ from jaxhydro.dynamics.newton_euler import sum_of_loads
 from jaxhydro.dynamics.state import State
 from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
+from jaxhydro.loads.any_lines import AnyLines
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
-from jaxhydro.loads.mooring_lines import MooringLines
 from jaxhydro.loads.stiffness import Stiffness
+from jaxhydro.loads.tension_table_lines import TensionTableLines
 from jaxhydro.quick_jit import quick_jit
 from jaxhydro.rotations import rotation
 from jaxhydro.waves.sea import StillWater
@@ -66,9 +67,7 @@ def mooring_stiffness(model: Model, position: Float[Array, "6"]) -> Float[Array,
     Returns:
         Stiffness (N/m, N, N m), (6, 6).
     """
-    lines = dataclasses.replace(
-        model, loads=tuple(load for load in model.loads if isinstance(load, MooringLines | CatenaryLines))
-    )
+    lines = dataclasses.replace(model, loads=tuple(load for load in model.loads if isinstance(load, AnyLines)))
     return -jax.jacfwd(lines.force_at_rest)(position)
 
 
@@ -78,7 +77,7 @@ class LineState(NamedTuple):
     Attributes:
         tension: Tension at the fairlead (N).
         angle: Angle of the line below the horizontal at the fairlead (rad).
-        strain: Tension over axial stiffness at the fairlead (-).
+        strain: Tension over axial stiffness at the fairlead (-); of a rope with a table, its stretch, 0 where it is slack.
         on_seabed: Unstretched length that rests on the seabed (m); 0 for a straight line.
     """
 
@@ -101,7 +100,7 @@ def line_states(model: Model, position: Float[Array, "6"]) -> list[LineState]:
     matrix = rotation(jnp.asarray(position)[3:])
     found: list[LineState] = []
     for load in model.loads:
-        if isinstance(load, MooringLines | CatenaryLines):
+        if isinstance(load, AnyLines):
             columns = [np.asarray(column) for column in _line_columns(load, jnp.asarray(position), matrix)]
             found += [LineState(*(float(x) for x in row)) for row in zip(*columns, strict=True)]
     return found
@@ -109,7 +108,7 @@ def line_states(model: Model, position: Float[Array, "6"]) -> list[LineState]:
 
 @quick_jit
 def _line_columns(
-    load: MooringLines | CatenaryLines, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
+    load: AnyLines, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
 ) -> tuple[Float[Array, " l"], Float[Array, " l"], Float[Array, " l"], Float[Array, " l"]]:
     """Tension, angle, strain and length on the seabed of lines."""
     tension, towards = load.tension(position, matrix)
@@ -117,6 +116,8 @@ def _line_columns(
     angle = jnp.arcsin(jnp.clip(down, -1.0, 1.0))
     if isinstance(load, CatenaryLines):
         return tension, angle, tension / load.segments().stiffness[0], load.on_seabed(tension * down)
+    if isinstance(load, TensionTableLines):
+        return tension, angle, jnp.maximum(load.strain(position, matrix), 0.0), jnp.zeros_like(tension)
     lines = [f"line{i + 1}" for i in range(load.anchor.shape[1])]
     axial = jnp.stack([load.stiffness[line] * load.unstretched_length[line] for line in lines])
     return tension, angle, tension / axial, jnp.zeros_like(tension)

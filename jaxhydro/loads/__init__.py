@@ -24,6 +24,7 @@ from jaxhydro.loads.hydrostatics import Buoyancy
 from jaxhydro.loads.hysteresis import Hysteresis
 from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.linear_damping import LinearDamping
+from jaxhydro.loads.liquid_column_dampers import LiquidColumnDampers
 from jaxhydro.loads.mass_error import MassError
 from jaxhydro.loads.mooring_lines import MooringLines
 from jaxhydro.loads.mooring_nonlinearity import MooringNonlinearity
@@ -34,6 +35,8 @@ from jaxhydro.loads.rotor_thrust import RotorThrust
 from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.loads.stiffness import Stiffness
 from jaxhydro.loads.strip_inertia import StripInertia
+from jaxhydro.loads.tension_table_lines import TensionTableLines
+from jaxhydro.loads.tuned_mass_dampers import TunedMassDampers
 from jaxhydro.loads.umbilical import Umbilical
 from jaxhydro.loads.wave_drift import WaveDrift
 from jaxhydro.loads.wave_drift_damping import WaveDriftDamping
@@ -47,11 +50,14 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "hydrostatic_coupling": HydrostaticCoupling,
     "mooring_lines": MooringLines,
     "catenary_lines": CatenaryLines,
+    "tension_table_lines": TensionTableLines,
     "stiffness": Stiffness,
     "linear_damping": LinearDamping,
     "quadratic_damping": QuadraticDamping,
     "added_mass": AddedMass,
     "guided_masses": GuidedMasses,
+    "tuned_mass_dampers": TunedMassDampers,
+    "liquid_column_dampers": LiquidColumnDampers,
     "rotor_thrust": RotorThrust,
     "strip_inertia": StripInertia,
     "end_inertia": EndInertia,

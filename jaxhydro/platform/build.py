@@ -23,7 +23,6 @@ from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
     Buoyancy,
-    CatenaryLines,
     EndInertia,
     GuidedMasses,
     LinearDamping,
@@ -35,6 +34,7 @@ from jaxhydro.loads import (
     StripInertia,
     Weight,
 )
+from jaxhydro.loads.any_lines import AnyLines
 from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import with_exponents
 from jaxhydro.parameters import strongly_typed
@@ -43,7 +43,10 @@ from jaxhydro.platform.catenary_build import catenary_lines, catenary_remarks
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.computed_hydrostatics import with_hydrostatics
 from jaxhydro.platform.computed_loads import tables_of
+from jaxhydro.platform.damper_build import damper_loads, damper_mass, damper_remarks
 from jaxhydro.platform.drag_laws import DragLaw, plain_drag, with_drag_laws
+from jaxhydro.platform.tension_table_build import tension_table_lines
+from jaxhydro.platform.tension_table_schema import TensionTableMooring
 from jaxhydro.quick_jit import on_device, quick_jit
 from jaxhydro.remarks import Remark, as_warnings
 from jaxhydro.scales import size_of
@@ -107,7 +110,7 @@ def build(platform: schema.Platform) -> Model:
         letter = "A" if name == "added_mass" else "B"
         if values := _entries(letter, matrix):
             loads.append(load(values))
-    loads += _guided(platform)
+    loads += _guided(platform) + damper_loads(platform)
     if (rotor := platform.rotor) is not None:
         loads.append(RotorThrust(on_device(rotor.hub), on_device(rotor.thrust), on_device(rotor.damping)))
     computed, said = tables_of(platform, declared)
@@ -124,7 +127,7 @@ def build(platform: schema.Platform) -> Model:
     conventions = Conventions(
         platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal
     )
-    all_remarks = (*_of_mooring(platform), *remarks, *said)
+    all_remarks = (*_of_mooring(platform), *damper_remarks(platform), *remarks, *said)
     flowing: tuple[AbstractWaterEffect, ...] = ()
     if water.current is not None:
         height, velocity = water.current.profile(water.depth)
@@ -256,9 +259,11 @@ def _guided(platform: schema.Platform) -> list[AbstractLoad]:
 
 
 def _of_mooring(platform: schema.Platform) -> tuple[Remark, ...]:
-    """Warning of mooring lines that are slack at rest, if any."""
+    """Warnings of mooring lines that are slack or stretched by much at rest."""
     if isinstance(platform.mooring, Catenary):
         return as_warnings(catenary_remarks(platform.mooring, platform.water, platform.name))
+    if isinstance(platform.mooring, TensionTableMooring):
+        return as_warnings(platform.mooring.remarks())
     slack = platform.mooring.slackness() if isinstance(platform.mooring, schema.LinearSprings) else ""
     return as_warnings([slack] if slack else [])
 
@@ -269,6 +274,8 @@ def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
         return [Stiffness(_entries("C", mooring.matrix()), jnp.asarray(mooring.preload), "mooring")]
     if isinstance(mooring, Catenary):
         return [catenary_lines(mooring, platform.water)]
+    if isinstance(mooring, TensionTableMooring):
+        return [tension_table_lines(mooring)]
     if not isinstance(mooring, schema.LinearSprings):
         return []
     springs = {f"line{i + 1}": line.spring() for i, line in enumerate(mooring.lines)}
@@ -290,6 +297,7 @@ def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: floa
     if volume is None:
         pull = sum(float(m.preload[2]) if isinstance(m, Stiffness) else _line_pull(m) for m in _mooring(platform))
         borne = mass + sum(guided.mass for guided in platform.guided_masses if guided.weight)
+        borne += damper_mass(platform)
         volume = (
             own["displaced_volume"]
             if platform.members and not declared.linear
@@ -314,11 +322,11 @@ def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: floa
 
 def _line_pull(load: AbstractLoad) -> float:
     """Vertical force (N) of lines at the reference position."""
-    assert isinstance(load, MooringLines | CatenaryLines)
+    assert isinstance(load, AnyLines)
     tension, towards = (np.asarray(x) for x in _pull(load))
     return float((tension * towards[2]).sum())
 
 
 @quick_jit
-def _pull(load: MooringLines | CatenaryLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
+def _pull(load: AnyLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
     return load.tension(jnp.zeros(6), jnp.eye(3))

@@ -107,7 +107,9 @@ def catenary_remarks(mooring: Catenary, water: WaterProperties, source: str) -> 
             f"with {float(horizontal[worst]) / 1e3:.4g} kN of horizontal tension in line {worst + 1}. Chain and wire break at "
             "1 to 2 %, polyester near 12 %. Check lengths, anchors and axial stiffness"
         )
-    if slack := [i + 1 for i, (on_bed, pull) in enumerate(zip(load.grounded, horizontal)) if on_bed and pull == 0.0]:
+    taut_lines = [mooring.lines[i].distance() > mooring.lines[i].length() for i, _ in places]  # vertical tendons, too
+    hanging = [on_bed and pull == 0.0 and not taut for on_bed, pull, taut in zip(load.grounded, horizontal, taut_lines)]
+    if slack := [i + 1 for i, hangs in enumerate(hanging) if hangs]:
         which = "every line hangs" if len(slack) == len(places) else f"line {', '.join(map(str, slack))}: hangs"
         found.append(
             f"mooring.lines: {which} straight down at the reference position and has no horizontal tension. "

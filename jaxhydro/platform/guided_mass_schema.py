@@ -1,7 +1,7 @@
 """Schema of masses that follow the hull in some directions only, in SI."""
 
-from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from collections.abc import Iterator, Sequence
+from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import BeforeValidator, Field
 
@@ -35,9 +35,17 @@ class GuidedMass(Consistent):
         return tuple("xyz".index(axis) for axis in self.moves)
 
 
-def twice_named(masses: tuple[GuidedMass, ...]) -> Iterator[Problem]:
-    """Masses of a name that one before them has."""
-    names = [mass.name for mass in masses]
+class Named(Protocol):
+    """What has a name."""
+
+    @property
+    def name(self) -> str:
+        """The name."""
+
+
+def twice_named(key: str, things: Sequence[Named]) -> Iterator[Problem]:
+    """Entries of a list in the platform file, under `key`, of a name that one before them has."""
+    names = [thing.name for thing in things]
     for i, name in enumerate(names):
         if name in names[:i]:
-            yield Problem(f"guided_masses[{i}].name", "a name of its own", f"{shown(name)} again")
+            yield Problem(f"{key}[{i}].name", "a name of its own", f"{shown(name)} again")

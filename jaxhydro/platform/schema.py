@@ -34,8 +34,11 @@ from jaxhydro.platform.body import Coefficients, Inertia, Member, Part, RigidBod
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.current_schema import SteadyCurrent
 from jaxhydro.platform.guided_mass_schema import GuidedMass, twice_named
+from jaxhydro.platform.liquid_column_damper_schema import LiquidColumnDamper
 from jaxhydro.platform.other_waves import OtherWaves, other_waves
 from jaxhydro.platform.shared_coefficients import owners, sharing_faults
+from jaxhydro.platform.tension_table_schema import TensionTableMooring
+from jaxhydro.platform.tuned_mass_damper_schema import TunedMassDamper
 
 __all__ = ["Coefficients", "Inertia", "Member", "Part", "Platform", "RigidBody", "builtin_platforms", "load_platform"]
 
@@ -378,6 +381,8 @@ class Platform(Consistent):
     water: Water
     rigid_body: RigidBody
     guided_masses: tuple[GuidedMass, ...] = ()
+    tuned_mass_dampers: tuple[TunedMassDamper, ...] = ()
+    liquid_column_dampers: tuple[LiquidColumnDamper, ...] = ()
     rotor: Rotor | None = None
     members: tuple[Member, ...] = ()
     coefficients: dict[Text, Coefficients] = {}
@@ -385,10 +390,10 @@ class Platform(Consistent):
     quadratic_damping: QuadraticDamping = QuadraticDamping()
     added_mass: AddedMass = AddedMass()
     stiffness: Stiffness = Stiffness()
-    mooring: NoMooring | LinearSprings | Catenary | StiffnessMatrix = Field(
+    mooring: NoMooring | LinearSprings | Catenary | TensionTableMooring | StiffnessMatrix = Field(
         default=NoMooring(),
         discriminator="kind",
-        description="a mapping with `kind`: none, linear_springs, catenary or stiffness_matrix",
+        description="a mapping with `kind`: none, linear_springs, catenary, tension_table or stiffness_matrix",
     )
     hydrostatics: Hydrostatics = Hydrostatics()
     radiation: Radiation | None = None
@@ -423,7 +428,9 @@ class Platform(Consistent):
                     yield Problem(f"members[{i}].{end}", f"a point above the sea bed, z = {bed:g} m", f"z = {z:g} m")
         if isinstance(self.mooring, Catenary):
             yield from self.mooring.water_faults(self.water.density, self.water.depth, self.water.gravity)
-        yield from twice_named(self.guided_masses)
+        yield from twice_named("guided_masses", self.guided_masses)
+        yield from twice_named("tuned_mass_dampers", self.tuned_mass_dampers)
+        yield from twice_named("liquid_column_dampers", self.liquid_column_dampers)
         groups = {member.group for member in self.members}
         yield from sharing_faults(self.coefficients, groups)
         missing = sorted(groups - set(self.coefficients))

@@ -20,7 +20,7 @@ from jaxhydro.dynamics.simulate import largest_step, simulate
 from jaxhydro.dynamics.statics import EquilibriumError
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.loads import CatenaryLines, MooringLines
+from jaxhydro.loads.any_lines import AnyLines
 from jaxhydro.platform.build import model_of
 from jaxhydro.platform.schema import load_platform
 from jaxhydro.rotations import rotation
@@ -211,8 +211,8 @@ def elevation(
     return np.resize(np.fft.irfft(spectrum, count) * (count / 2), len(times))
 
 
-def _lines(model: Model) -> MooringLines | CatenaryLines | None:
-    return next((load for load in model.loads if isinstance(load, MooringLines | CatenaryLines)), None)
+def _lines(model: Model) -> AnyLines | None:
+    return next((load for load in model.loads if isinstance(load, AnyLines)), None)
 
 
 def _line_count(model: Model) -> int:

@@ -46,6 +46,7 @@ from jaxhydro.loads import (
     StaticForce,
     Stiffness,
     StripInertia,
+    TensionTableLines,
     Umbilical,
     WaveDrift,
     WaveDriftDamping,
@@ -61,6 +62,7 @@ from jaxhydro.loads.drag import (
     SpeedPowerLaw,
     SuctionSideLaw,
 )
+from jaxhydro.loads.tension_table_lines import TensionTable
 from jaxhydro.parameters import AbstractEffect
 from jaxhydro.sensors import SENSOR_EFFECTS, SensorLag, SensorReference
 from jaxhydro.water import WATER_EFFECTS, Current, CurrentProfile, WaveGaugePosition, WaveReflection
@@ -104,6 +106,13 @@ EVERYTHING = {
         {"name": "rod", "mass": 2e5, "point": [2.0, -3.0, 5.0], "moves": ["z"], "weight": True},
         {"name": "carriage", "mass": 5e5, "point": [4.0, 1.0, -6.0], "moves": ["x", "y"]},
     ],
+    "tuned_mass_dampers": [
+        {"name": "top", "mass": 2e5, "point": [1.0, 2.0, 60.0], "direction": [1, 0.2, 0.1], "period": 9.0, "damping_ratio": 0.1}
+    ],
+    "liquid_column_dampers": [
+        {"name": "tube", "point": [1.0, 2.0, -9.0], "direction": [1, 0.5, 0], "width": 20.0, "column": 5.0, "area": 2.0}
+        | {"head_loss": 2.0, "density": 1025.0}
+    ],
     "rotor": {"hub": [-5.0, 1.0, 150.0], "thrust": 2e6, "damping": 1.2e5},
     "stiffness": {"C11": 2e4, "C35": 4e5},
     "mooring": SPRINGS,
@@ -120,6 +129,18 @@ CATENARIES = CatenaryLines(  # one that rests on the seabed, of two types, and o
     {"line1.segment1": 300.0, "line1.segment2": 290.0, "line2": 94.0},
     {"line1": 2.0, "line2": -1.0},
     0.5,
+)
+ROPES = TensionTableLines(
+    jnp.array([[-600.0, 90.0], [0.0, 40.0], [-100.0, -60.0]]),
+    jnp.array([[-58.0, 20.0], [0.0, 10.0], [-14.0, -14.0]]),
+    (
+        TensionTable.of(np.array([0.0, 0.01, 0.03, 0.1]), np.array([0.0, 1e5, 8e5, 9e6]), "pchip"),
+        TensionTable.of(np.array([0.0, 2.0, 4.0]), np.array([0.0, 1e5, 5e5]), "linear"),
+    ),
+    (True, False),
+    (0, 1),
+    {"rope1": 540.0, "rope2": 85.0},
+    {"rope1": 1.0, "rope2": 0.8},
 )
 EXCITATION = Excitation.of(np.linspace(0.2, 2.0, 5), np.random.default_rng(4).normal(0, 1e6, (6, 5)) + 4e5j)
 TRANSFER = Transfer.of(np.linspace(0.2, 2.0, 5), np.random.default_rng(3).normal(0, 2e4, (6, 5, 5)) + 3e4j * np.tri(5))
@@ -178,6 +199,7 @@ def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad
     return (
         Umbilical(),
         CATENARIES,
+        ROPES,
         NonlinearHydrostatics.neutral(),
         MassError(model.body.mass, model.body.centre),
         ComputedRadiation(*map(jnp.asarray, RADIATION)),

@@ -31,6 +31,7 @@ from jaxhydro.loads import (
     QuadraticDamping,
     Stiffness,
     StripInertia,
+    TensionTableLines,
     Weight,
 )
 
@@ -38,7 +39,8 @@ RIPPLE = 1e-6  # m, height of the waves of a deck with the keyword MCF: SeaState
 GRID_MARGIN = 50.0  # m, of SeaState's grid beyond the hull, and below it
 WRITTEN = (
     *(AddedMass, Buoyancy, CatenaryLines, ComputedExcitation, ComputedRadiation, DriftTransfer, EndInertia),
-    *(HydrostaticCoupling, LinearDamping, MooringLines, MorisonDrag, QuadraticDamping, Stiffness, StripInertia, Weight),
+    *(HydrostaticCoupling, LinearDamping, MooringLines, MorisonDrag, QuadraticDamping, Stiffness, StripInertia),
+    *(TensionTableLines, Weight),
 )
 
 

@@ -17,7 +17,7 @@ from jaxhydro.dynamics.static_forces import forces_by_load, mooring_stiffness
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
 from jaxhydro.interop.export_source import ExportSource
 from jaxhydro.interop.openfast.export_text import row
-from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, RotorThrust, Stiffness
+from jaxhydro.loads import LinearDamping, MooringLines, QuadraticDamping, RotorThrust, Stiffness, TensionTableLines
 from jaxhydro.loads.matrix import assemble
 
 Matrix6 = Float[np.ndarray, "6 6"]
@@ -64,13 +64,14 @@ def exported_terms(source: ExportSource) -> ExportedTerms:
             terms.stiffness += np.asarray(assemble(load.entries))
             terms.preload += np.asarray(load.preload)
             say(load.name, Treatment.TAKEN, "AddCLin, and the preload as AddF0, in earth axes as here.")
-        elif isinstance(load, MooringLines):
+        elif isinstance(load, MooringLines | TensionTableLines):
             lines, upright = dataclasses.replace(source.model, loads=(load,)), jnp.zeros(6)
             force = sum(forces_by_load(lines, upright).values(), np.zeros(6))
             stiffness = np.asarray(mooring_stiffness(lines, upright))
             terms.preload += force
             terms.stiffness += np.where(np.abs(stiffness) > 1e-12 * np.abs(stiffness).max(), stiffness, 0.0)
-            text = "AddF0 and AddCLin: the pull of the straight springs and its slope at the reference position."
+            kind = "springs" if isinstance(load, MooringLines) else "ropes, whose table OpenFAST has not,"
+            text = f"AddF0 and AddCLin: the pull of the straight {kind} and its slope at the reference position."
             say("mooring", Treatment.APPROXIMATED, text)
         elif isinstance(load, LinearDamping):
             terms.linear += np.asarray(assemble(load.entries))

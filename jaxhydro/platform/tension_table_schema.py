@@ -1,0 +1,119 @@
+"""Schema of ropes whose tension is a table over stretch or strain, in SI, headings in degrees."""
+
+import itertools
+import math
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from jaxhydro.errors import Consistent, NonNegative, Number, Positive, Problem, Text, Vector, shown, suggest
+
+Column = Annotated[tuple[NonNegative, ...], Field(min_length=2)]
+
+
+class Rope(Consistent):
+    """Tension (N) of a rope over its `strain` (-) or its `stretch` (m), both from 0."""
+
+    tension: Column
+    strain: Column | None = None
+    stretch: Column | None = None
+    interpolation: Literal["linear", "pchip"] = "linear"
+
+    def _faults(self) -> Iterator[Problem]:
+        given = [key for key in ("strain", "stretch") if getattr(self, key) is not None]
+        if len(given) != 1:
+            yield Problem("", "either strain or stretch", "both" if given else "neither")
+            return
+        (key,) = given
+        column = getattr(self, key)
+        if len(column) != len(self.tension):
+            yield Problem("tension", f"{len(column)} numbers, as {key} has", f"{len(self.tension)} numbers")
+        for name, values in ((key, column), ("tension", self.tension)):
+            if values[0] != 0.0:
+                yield Problem(f"{name}[0]", "0, where the rope begins to pull", shown(values[0]))
+        for i, (before, after) in enumerate(itertools.pairwise(column), 1):
+            if after <= before:
+                yield Problem(f"{key}[{i}]", f"a number > {before:g}, the one before", shown(after))
+        for i, (before, after) in enumerate(zip(self.tension[:-1], self.tension[1:]), 1):
+            if after < before:
+                yield Problem(f"tension[{i}]", f"a number >= {before:g}, the one before", shown(after))
+
+    @property
+    def over_strain(self) -> bool:
+        """Whether the table is over strain; else over stretch."""
+        return self.strain is not None
+
+    def entries(self) -> np.ndarray:
+        """Strain (-) or stretch (m) of the table's entries, (n,)."""
+        return np.array(self.strain if self.strain is not None else self.stretch, float)
+
+
+class RopeLine(Consistent):
+    """Straight line of a rope from anchor to fairlead (m), copied to each `heading` (deg) about the z axis."""
+
+    rope: Text
+    anchor: Vector
+    fairlead: Vector
+    unstretched_length: Positive
+    heading: Annotated[tuple[Number, ...], Field(min_length=1)] = (0.0,)
+
+    def _faults(self) -> Iterator[Problem]:
+        if self.anchor == self.fairlead:
+            yield Problem("fairlead", "a point that is not the anchor", shown(self.fairlead))
+
+    def copies(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Anchor and fairlead (m) at each heading."""
+        found = []
+        for heading in self.heading:
+            c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
+            turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+            found.append((turn @ np.array(self.anchor), turn @ np.array(self.fairlead)))
+        return found
+
+    def distance(self) -> float:
+        """Distance (m) from anchor to fairlead at the reference position."""
+        return float(np.linalg.norm(np.subtract(self.anchor, self.fairlead)))
+
+
+class TensionTableMooring(Consistent):
+    """Mooring of straight ropes whose tension is a table."""
+
+    kind: Literal["tension_table"]
+    ropes: Annotated[dict[Text, Rope], Field(min_length=1)]
+    lines: Annotated[tuple[RopeLine, ...], Field(min_length=1)]
+
+    def _faults(self) -> Iterator[Problem]:
+        known, used = ", ".join(self.ropes), {line.rope for line in self.lines}
+        for i, line in enumerate(self.lines):
+            if line.rope not in self.ropes:
+                expected = f"a rope of `ropes` ({known})"
+                yield Problem(f"lines[{i}].rope", expected, shown(line.rope), suggest(line.rope, self.ropes))
+        for name in self.ropes:
+            if name not in used and not suggest(name, used - set(self.ropes)):
+                yield Problem(f"ropes.{name}", f"a rope that a line has ({', '.join(sorted(used))})", shown(name))
+
+    def remarks(self) -> list[str]:
+        """Warnings of lines that are slack, or stretched beyond their table, at the reference position."""
+        slack, beyond, number = [], [], 0
+        for line in self.lines:
+            rope = self.ropes[line.rope]
+            stretch = line.distance() - line.unstretched_length
+            taken = stretch / line.unstretched_length if rope.over_strain else stretch
+            for _ in line.heading:
+                number += 1
+                if stretch < -1e-9 * line.distance():
+                    length = f"{line.unstretched_length:.4g} m unstretched"
+                    slack.append(f"rope {number}: {line.distance():.4g} m to its anchor, {length}")
+                elif taken > rope.entries()[-1]:
+                    beyond.append(f"rope {number}: {taken:.4g}, and {rope.entries()[-1]:.4g} at the table's end")
+        found = []
+        if slack:
+            found.append(f"mooring.lines: slack at the reference position, and pulling nothing there: {'; '.join(slack)}")
+        if beyond:
+            found.append(
+                "mooring.lines: stretched beyond the table at the reference position, where the tension goes on as steeply "
+                f"as at its end: {'; '.join(beyond)}"
+            )
+        return found
