@@ -10,9 +10,9 @@ from numpy.testing import assert_allclose
 from test_seas import document, plain, write
 
 import jaxhydro as jh
-from calibration.campaign.wave_directions import stated_directions
 from calibration.campaign.load_campaign import load_campaign
 from calibration.campaign.stated_sea import Sea
+from calibration.campaign.wave_directions import stated_directions
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.residuals.measured_seas import Options, compare, seas_of
 from jaxhydro.errors import InputError, validate
