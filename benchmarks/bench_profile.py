@@ -17,6 +17,9 @@ from jaxhydro.rotations import rotation, turned
 from jaxhydro.waves.sea import AbstractSea
 
 Part = Callable[[Model, AbstractSea, jax.Array, State], Any]
+_NO_OPERATION = {"parameter", "constant", "get-tuple-element", "tuple", "bitcast"}
+# name = stablehlo.operation ...; name = type[shape] operation(...); name = (types) operation(...)
+_ASSIGNMENT = re.compile(r"\s*(?:ROOT )?%?[\w.:-]+ = (?:\(.*?\) |\w+\[\S* )?(?P<operation>[a-z][\w.-]*)")
 SQUARE = 768  # of the matrices whose product says what arithmetic can be had
 LARGE = 32_000_000  # float64 numbers that no cache holds
 
@@ -71,10 +74,9 @@ def path_of(hour: Hour, sea: AbstractSea) -> State:
 
 
 def operations_of(text: str) -> int:
-    """Number of operations in a program's text, constants, parameters and what only joins or names values left out."""
-    left_out = re.compile(r"\b(parameter|constant|get-tuple-element|tuple|bitcast|stablehlo\.constant)\b\(?")
-    found = [right for line in text.splitlines() for left, equal, right in [line.partition(" = ")] if equal]
-    return sum(1 for right in found if not left_out.search(right.split("(", 1)[0] + "("))
+    """Number of operations in a program's text, StableHLO or HLO; what only joins or names values is not counted."""
+    found = (_ASSIGNMENT.match(line) for line in text.splitlines())
+    return sum(1 for one in found if one and one["operation"].rpartition(".")[2] not in _NO_OPERATION)
 
 
 def launched_of(text: str) -> int:

@@ -10,7 +10,7 @@ from jax.extend import core
 from jaxhydro.integrators.equations import apply
 
 MOVES = {"broadcast_in_dim", "reshape", "squeeze", "expand_dims", "concatenate", "slice", "transpose", "rev", "stack", "split"}
-MOVES |= {"unstack", "gather", "dynamic_slice", "scatter", "pad"}
+MOVES |= {"unstack", "gather", "dynamic_slice", "scatter", "pad", "tile"}
 
 
 def sources(equation: core.JaxprEqn) -> tuple[int, ...]:

@@ -18,11 +18,11 @@ from jaxhydro.integrators.equations import apply, walk
 from jaxhydro.integrators.kernel_moves import MOVES, moved, sources
 from jaxhydro.integrators.kernel_plan import Plan, Value
 
-ELEMENTWISE = frozenset(
-    "abs neg ceil floor exp exp2 expm1 log log1p sqrt rsqrt square cbrt sin cos tan asin acos atan atan2 sinh cosh tanh "
-    "asinh acosh atanh add sub mul div rem max min pow integer_pow and or not xor eq ne lt le gt ge select_n clamp "
-    "convert_element_type is_finite sign round copy".split()
-)
+ELEMENTWISE = {"abs", "neg", "ceil", "floor", "exp", "exp2", "expm1", "log", "log1p", "sqrt", "rsqrt", "square"}
+ELEMENTWISE |= {"cbrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh"}
+ELEMENTWISE |= {"acosh", "atanh", "add", "sub", "mul", "div", "rem", "max", "min", "pow", "integer_pow", "and", "or"}
+ELEMENTWISE |= {"not", "xor", "eq", "ne", "lt", "le", "gt", "ge", "select_n", "clamp", "convert_element_type"}
+ELEMENTWISE |= {"is_finite", "sign", "round", "copy"}
 REDUCTIONS = {"reduce_sum": "add", "reduce_max": "max", "reduce_min": "min", "reduce_prod": "mul", "reduce_and": "and"}
 REDUCTIONS |= {"reduce_or": "or"}
 IDENTITIES = {"optimization_barrier", "stop_gradient", "copy_p", "reduce_precision"}

@@ -12,7 +12,7 @@ from jaxhydro.integrators.runge_kutta import Rate
 Precision = Literal["double", "mixed"]
 APART = frozenset({"optimization_barrier"})  # operations whose operands have nothing to do with each other
 # operations that hold functions traced in float64
-WHOLE = frozenset("scatter scatter-add scatter_add scatter_mul while scan cond reduce custom_linear_solve".split())
+WHOLE = {"scatter", "scatter-add", "scatter_add", "scatter_mul", "while", "scan", "cond", "reduce", "custom_linear_solve"}
 
 
 def in_float32(rate: Rate) -> Rate:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import jaxhydro as jh
-from jaxhydro.dynamics.integrate import integrate
+from jaxhydro.dynamics.integrate import clock, integrate
 from jaxhydro.integrators import adams_bashforth, kernel_loop
 from jaxhydro.integrators.kernel_trace import KernelError
 
@@ -78,3 +78,32 @@ def test_what_a_kernel_cannot_do_is_told():
 def test_a_kernel_is_for_one_scheme():
     with pytest.raises(ValueError, match="the kernel is for method 'ab4' with adjoint 'forward', found 'rk4' with 'forward'"):
         integrate(None, None, None, None, None, 3, "rk4", kernel="gpu")
+
+
+@pytest.mark.slow
+def test_a_platform_in_seas_moves_in_a_kernel_as_elsewhere():
+    model, steps, step = jh.load_model("volturnus-s-focal"), 16, 0.25
+    start = jh.State(jh.equilibrium(model) + jnp.array([1.0, 2.0, 0.5, 0.02, 0.03, 0.01]), jnp.zeros(6), model.rest().memory)
+    seas = []
+    for seed in (1, 2):
+        waves = jh.spectrum_components(
+            lambda omega: jh.jonswap(omega, 8.0, 12.0), 60.0, model.environment, low=0.03, cutoff=0.3, seed=seed
+        )
+        sea = jh.IrregularSea(waves, model.environment, 2, "vertical")
+        seas.append(sea.prepared(model.hull.extremities(), model.cylinders, clock("ab4", 0.0, step, steps)))
+    static = eqx.partition(seas[0], eqx.is_array)[1]
+    arrays = jax.tree.map(lambda *x: jnp.stack(x), *(eqx.filter(sea, eqx.is_array) for sea in seas))
+
+    def moved(kernel, precision="double"):
+        def one(arrays):
+            sea = eqx.combine(arrays, static)
+            options = {"kernel": kernel, "precision": precision}
+            return integrate(model, sea, start, jnp.zeros(()), jnp.asarray(step), steps, "ab4", **options).position
+
+        return jax.jit(jax.vmap(one))
+
+    exact, found = (np.asarray(moved(kernel)(arrays)) for kernel in ("off", "interpreted"))
+    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-12 * np.abs(exact).max())
+    assert np.abs(exact[0] - exact[1]).max() > 1e-3
+    text = moved("gpu", "mixed").trace(arrays).lower(lowering_platforms=("cuda",)).as_text()
+    assert text.count("__gpu$xla.gpu.triton") == 1
