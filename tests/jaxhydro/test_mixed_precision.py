@@ -4,9 +4,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from fake_sweep import written
 
 import jaxhydro as jh
 from jaxhydro.integrators.mixed_precision import in_float32
+from jaxhydro.sweep import load_sweep
+from jaxhydro.sweep.cases import Plan
+from jaxhydro.sweep.execute import prepared
 
 STATISTICS = {"mean": np.mean, "standard deviation": np.std, "largest": np.max, "least": np.min}
 
@@ -44,6 +48,15 @@ def test_statistics_of_a_sea_hardly_change():
         for name, statistic in STATISTICS.items():
             assert abs(statistic(mixed[:, i]) - statistic(double[:, i])) < 1e-4 * deviation, (i, name)
         assert 0 < np.abs(mixed[:, i] - double[:, i]).max() < 1e-4 * deviation
+
+
+def test_a_sweep_states_its_precision(tmp_path):
+    made = prepared(load_sweep(written(tmp_path, precision="mixed")), "sweep.yaml")
+    assert made.inputs.plan.precision == "mixed"
+    assert Plan.from_json(made.inputs.plan.to_json()) == made.inputs.plan
+    assert any("float32" in note for note in made.notes)
+    with pytest.raises(jh.InputError, match="precision"):
+        load_sweep(written(tmp_path, precision="half"))
 
 
 def test_a_precision_that_is_not_known_is_named():
