@@ -10,6 +10,11 @@ CALLS = {"jit", "pjit", "closed_call", "core_call", "custom_jvp_call", "custom_v
 Bind = Callable[[core.JaxprEqn, list[Any]], list[Any]]
 
 
+def type_of(atom: Any) -> Any:
+    """Shape and type of an operand or a result."""
+    return atom.aval
+
+
 def walk(jaxpr: core.Jaxpr, consts: Sequence[Any], arguments: Sequence[Any], bind: Bind) -> list[Any]:
     """Results of a traced function, operation by operation.
 
@@ -25,12 +30,12 @@ def walk(jaxpr: core.Jaxpr, consts: Sequence[Any], arguments: Sequence[Any], bin
     known: dict[core.Var, Any] = dict(zip((*jaxpr.constvars, *jaxpr.invars), (*consts, *arguments), strict=True))
 
     def value(atom: Any) -> Any:
-        return np.asarray(atom.val, atom.aval.dtype) if isinstance(atom, core.Literal) else known[atom]
+        return np.asarray(atom.val, type_of(atom).dtype) if isinstance(atom, core.Literal) else known[atom]
 
     for equation in jaxpr.eqns:
         values = [value(atom) for atom in equation.invars]
         if equation.primitive.name in CALLS:
-            inner = equation.params.get("call_jaxpr", equation.params.get("jaxpr"))
+            inner: Any = equation.params.get("call_jaxpr", equation.params.get("jaxpr"))
             body, own = (inner.jaxpr, inner.consts) if isinstance(inner, core.ClosedJaxpr) else (inner, ())
             found = walk(body, own, values, bind)
         else:

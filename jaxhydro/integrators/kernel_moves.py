@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend import core
 
-from jaxhydro.integrators.equations import apply
+from jaxhydro.integrators.equations import apply, type_of
 
 MOVES = {"broadcast_in_dim", "reshape", "squeeze", "expand_dims", "concatenate", "slice", "transpose", "rev", "stack", "split"}
 MOVES |= {"unstack", "gather", "dynamic_slice", "scatter", "pad", "tile"}
@@ -37,7 +37,7 @@ def moved(equation: core.JaxprEqn, addresses: Sequence[np.ndarray], others: Sequ
             shape[dimension] = size
         return [np.broadcast_to(first.reshape(shape), how["shape"])]
     if name in ("reshape", "squeeze", "expand_dims"):
-        return [first.reshape(equation.outvars[0].aval.shape)]
+        return [first.reshape(type_of(equation.outvars[0]).shape)]
     if name == "concatenate":
         return [np.concatenate(addresses, axis=how["dimension"])]
     if name == "stack":

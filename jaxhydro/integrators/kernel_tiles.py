@@ -14,7 +14,7 @@ from jaxhydro.integrators.kernel_plan import Instruction, Plan, Value
 
 UNROLLED = 8  # terms of a sum up to which each is written out
 WIDE = 8192  # numbers of a tile with which a sum over many terms is one reduction
-REDUCE = {"add": jnp.sum, "max": jnp.max, "min": jnp.min}
+REDUCE: dict[str, Any] = {"add": jnp.sum, "max": jnp.max, "min": jnp.min}
 COMBINE = {"add": jnp.add, "max": jnp.maximum, "min": jnp.minimum, "mul": jnp.multiply, "and": jnp.logical_and}
 COMBINE |= {"or": jnp.logical_or}
 NEUTRAL = {"add": 0.0, "max": -math.inf, "min": math.inf}
@@ -180,7 +180,9 @@ class Writer:
             inside = jnp.arange(math.prod(shape), dtype=jnp.int32) % shape[1] < terms
             whole = jnp.where(inside, product(parts), jnp.full(inside.shape, NEUTRAL[how], dtype))
             return REDUCE[how](whole.reshape(shape), axis=1)
-        refs, firsts, steps = [self._ref(x) for x in operands], [], []
+        refs = [self._ref(x) for x in operands]
+        firsts: list[Any] = []
+        steps: list[int | None] = []
         for x in operands:
             away = x.address[..., 1] - x.address[..., 0]
             step = int(away.reshape(-1)[0])

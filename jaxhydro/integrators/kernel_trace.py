@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend import core
 
-from jaxhydro.integrators.equations import apply, walk
+from jaxhydro.integrators.equations import apply, type_of, walk
 from jaxhydro.integrators.kernel_moves import MOVES, moved, sources
 from jaxhydro.integrators.kernel_plan import Plan, Value
 
@@ -88,7 +88,7 @@ def _bind(made: Plan, equation: core.JaxprEqn, values: list[Any]) -> list[Any]:
 
 def _instruction(made: Plan, equation: core.JaxprEqn, values: list[Any]) -> Value:
     """Plan one computing operation."""
-    name, out = equation.primitive.name, equation.outvars[0].aval
+    name, out = equation.primitive.name, type_of(equation.outvars[0])
 
     def placed(x: Any) -> Any:
         if isinstance(x, Value):
@@ -99,7 +99,7 @@ def _instruction(made: Plan, equation: core.JaxprEqn, values: list[Any]) -> Valu
     if name in ELEMENTWISE:
         operands = [placed(x) for x in values]
         operands = [_of_shape(x, out.shape) if isinstance(x, Value) else x for x in operands]
-        types = [x.aval.dtype for x in equation.invars]
+        types = [type_of(x).dtype for x in equation.invars]
         how = {"primitive": equation.primitive, "parameters": equation.params, "types": types}
         return made.add(name, operands, how, out.shape, out.dtype)
     if name in REDUCTIONS:

@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 from jax.extend import core
 
-from jaxhydro.integrators.equations import apply, walk
+from jaxhydro.integrators.equations import apply, type_of, walk
 from jaxhydro.integrators.runge_kutta import Rate
 
 Precision = Literal["double", "mixed"]
@@ -42,7 +42,7 @@ def _bind(equation: core.JaxprEqn, values: list[Any]) -> list[Any]:
     if name in APART or not any(_dtype(x) == jnp.float32 for x in values):
         return apply(equation, values)
     if name in WHOLE:
-        found = apply(equation, [_to(x, jnp.float32, atom.aval.dtype) for x, atom in zip(values, equation.invars)])
+        found = apply(equation, [_to(x, jnp.float32, type_of(atom).dtype) for x, atom in zip(values, equation.invars)])
         return [_to(x, jnp.float64, jnp.float32) for x in found]
     changed = {
         key: jnp.dtype(jnp.float32)
