@@ -14,7 +14,7 @@ import numpy as np
 from benchmarks.bench_sea import CUTOFF, ELEMENTS, HEIGHT, LOW, PERIOD, PLATFORM, STEP
 from benchmarks.bench_timing import Row, contest
 from jaxhydro import IrregularSea, State, build, equilibrium, jonswap, load_platform, spectrum_components
-from jaxhydro.dynamics.integrate import clock, integrate
+from jaxhydro.dynamics.integrate import Kernel, clock, integrate
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.platform.convergence import with_elements
@@ -47,19 +47,20 @@ class Batch(NamedTuple):
 
         return self._replace(arrays=jax.tree.map(cast, self.arrays))
 
-    def march(self, precision: str) -> jax.Array:
-        """Positions (m, rad) in all seas after every step."""
+    def march(self, precision: str, kernel: Kernel = "off") -> jax.Array:
+        """Positions (m, rad) in all seas after every step, by one kernel or by XLA's many."""
         # a GPU's products of float32 have eleven bits where nothing is said
         with warnings.catch_warnings(), jax.enable_x64(precision == "float64"), jax.default_matmul_precision("highest"):
             warnings.filterwarnings("ignore", "Explicitly requested dtype")  # that is what is asked for
-            return jax.block_until_ready(_march(self.arrays, self.rest, jnp.asarray(STEP, PRECISIONS[precision]), self.steps))
+            step = jnp.asarray(STEP, PRECISIONS[precision])
+            return jax.block_until_ready(_march(self.arrays, self.rest, step, self.steps, kernel))
 
 
 @eqx.filter_jit
-def _march(arrays, rest, step, steps):
+def _march(arrays, rest, step, steps, kernel):
     def one(arrays):
         model, sea, start = eqx.combine(arrays, rest)
-        return integrate(model, sea, start, jnp.zeros_like(step), step, steps, "ab4").position
+        return integrate(model, sea, start, jnp.zeros_like(step), step, steps, "ab4", kernel=kernel).position
 
     return jax.vmap(one)(arrays)
 
@@ -102,14 +103,14 @@ def batch_of(model: Model, duration: float, count: int) -> Batch:
 
 
 def throughputs(
-    batch: Batch, precision: str, sizes: Sequence[int], rounds: int, now: Callable[[], float]
+    batch: Batch, precision: str, sizes: Sequence[int], rounds: int, now: Callable[[], float], kernel: Kernel = "off"
 ) -> Iterator[tuple[int, float]]:
     """Numbers of seas at once, up to what the memory holds, each with the simulated seconds of sea per second."""
     own = batch.as_(precision)
     for size in sizes:
         try:
             some = own.of(size)
-            turns = contest({"march": lambda some=some: some.march(precision)}, rounds, now)  # type: ignore[misc]
+            turns = contest({"march": lambda some=some: some.march(precision, kernel)}, rounds, now)  # type: ignore[misc]
         except jax.errors.JaxRuntimeError:
             return  # out of memory
         yield size, size * batch.steps * STEP / turns["march"].median
@@ -131,6 +132,22 @@ def error_of_float32(model: Model, duration: float) -> dict[str, float]:
     one = batch_of(model, duration, 1)
     exact, other = (np.asarray(one.as_(name).march(name), float)[0] for name in PRECISIONS)
     return {dof: float(np.abs(other - exact)[:, i].max() / exact[:, i].std()) for i, dof in enumerate(DOFS) if dof in SEEN}
+
+
+def in_one_kernel(batch: Batch, sizes: Sequence[int], rounds: int, kernel: Kernel) -> Iterator[Row]:
+    """Throughput with the time loop in one kernel, and its difference from XLA's program in the same precision."""
+    for precision in PRECISIONS:
+        try:
+            exact, other = (np.asarray(batch.of(1).march(precision, how), float)[0] for how in ("off", kernel))
+        except jax.errors.JaxRuntimeError as error:
+            yield Row(f"The time loop in one kernel, {precision}", f"fails: {str(error).splitlines()[0][:200]}")
+            continue
+        apart = np.abs(other - exact).max(axis=0) / np.abs(exact).max(axis=0)
+        off = ", ".join(f"{dof} {apart[i]:.1g}" for i, dof in enumerate(DOFS) if dof in SEEN)
+        yield Row(f"Largest difference of one kernel from many, {precision}, over the largest motion", off)
+        for size, value in throughputs(batch, precision, sizes, rounds, time.perf_counter, kernel):
+            many = f"{size} sea{'s' * (size > 1)} at once in one kernel, {precision}, simulated time over time"
+            yield Row(many, f"{rounded(value):.0f}", "1000000")
 
 
 def rounded(value: float) -> float:
@@ -180,6 +197,7 @@ def measure(quick: bool, figure: Path | None = None) -> Iterator[tuple[list[Row]
     ]
     if not cpu:
         rows += against_a_core(batch, best, rounds)
+        rows += in_one_kernel(batch, sizes, rounds, "gpu")
     each = sum(x.nbytes for x in jax.tree.leaves(batch.of(1).arrays))
     rows.append(Row("Memory of a sea that is ready, float64", f"{each / 1e6:.3g} MB for {duration:g} s of second order"))
     off = ", ".join(f"{dof} {value:.1g}" for dof, value in error_of_float32(model, 60.0 if quick else HOUR).items())

@@ -12,15 +12,17 @@ from jaxtyping import Array, Float, Int
 
 from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model, State
-from jaxhydro.integrators import adams_bashforth, runge_kutta
+from jaxhydro.integrators import adams_bashforth, mixed_precision, runge_kutta
 from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.support_sea import Clock
 
 Method = Literal["tsit5", "rk4", "ab4", "diffrax"]
 Adjoint = Literal["forward", "reverse"]
+Kernel = Literal["off", "gpu", "interpreted"]
 EXTRA_STEPS = 2  # steps, so that differences at the last one are central
 MOTION_SIZE = 12  # entries of the state before the loads' memories: position and velocity
 MAX_SEPARATE_STATE = 32  # entries of a state beyond which a forward derivative runs along with the simulation
+Precision = mixed_precision.Precision
 Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 
@@ -65,17 +67,19 @@ class Grid(eqx.Module):
         return x, v, a
 
 
-def _rate_of(unravel: Callable[[Array], State]) -> runge_kutta.Rate:
+def _rate_of(unravel: Callable[[Array], State], precision: Precision = "double") -> runge_kutta.Rate:
     """The equation of motion of states in one array."""
 
     @eqx.filter_jit  # traced once, not by every stage and derivative
     def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> tuple[Array, ...]:
         return tuple(leaf.reshape(-1) for leaf in jax.tree.leaves(driver[0].rate(time, unravel(y), driver[1])))
 
-    return rate
+    return rate if precision == "double" else mixed_precision.in_float32(rate)
 
 
-def _by_loop(method: Method, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Motion:
+def _by_loop(
+    method: Method, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint, precision
+) -> Motion:
     """A scheme as one of this package's own loops: positions and body velocities at the ends of the steps."""
     y, unravel = ravel_pytree(state)
     loop = adams_bashforth if method == "ab4" else runge_kutta
@@ -84,11 +88,23 @@ def _by_loop(method: Method, model: Model, sea: AbstractSea, state: State, start
     if adjoint == "forward" and y.shape[0] > MAX_SEPARATE_STATE:
         run, options["shown"] = loop.direct, MOTION_SIZE
 
-    path = run((model, sea), y, start, step, count, rate=_rate_of(unravel), capacity=capacity, **options)
+    path = run((model, sea), y, start, step, count, rate=_rate_of(unravel, precision), capacity=capacity, **options)
     return path[:, :6], path[:, 6:MOTION_SIZE]
 
 
-def _by_diffrax(model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Motion:
+def _by_kernel(
+    kernel: Kernel, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint, precision
+) -> Motion:
+    """Adams-Bashforth in one GPU kernel, to the end of the array."""
+    from jaxhydro.integrators import kernel_loop  # imports Pallas, which takes a while
+
+    y, unravel = ravel_pytree(state)
+    options: dict[str, Any] = {"capacity": capacity, "shown": MOTION_SIZE, "interpret": kernel == "interpreted"}
+    path = kernel_loop.march((model, sea), y, start, step, rate=_rate_of(unravel, precision), **options)
+    return path[:, :6], path[:, 6:MOTION_SIZE]
+
+
+def _by_diffrax(model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint, precision) -> Motion:
     """diffrax's Tsitouras 5(4) on the same grid.
 
     `StepTo`, not `ConstantStepSize`, whose reverse gradients are wrong with output on the step grid (diffrax 0.7.2).
@@ -122,16 +138,33 @@ def integrate(
     method: Method = "tsit5",
     adjoint: Adjoint = "forward",
     count: Int[Array, ""] | None = None,
+    kernel: Kernel = "off",
+    precision: Precision = "double",
 ) -> Grid:
     """Integrate the motion over `capacity` steps of `step` (s).
 
     Simulations of different lengths share one compilation by sharing a capacity: `count` says how many of its steps are
     taken. That holds with `adjoint` "forward" only, and not for "diffrax", which takes all steps.
+
+    With `kernel` "gpu" the time loop is one kernel (`kernel_loop`), without derivatives; with "interpreted" the same on any
+    device, slowly, for tests. Both are for "ab4" only, and take all steps. With `precision` "mixed" the loads and
+    the motion that they read are in float32 (`mixed_precision`), but not by "diffrax".
+
+    Raises:
+        UnknownName: Another method, adjoint, kernel or precision.
+        ValueError: A kernel with another method than "ab4", or with `adjoint` "reverse"; "mixed" with "diffrax".
+        KernelError: A load does what a kernel cannot do.
     """
-    check(method=(method, get_args(Method)), adjoint=(adjoint, get_args(Adjoint)))
+    check(method=(method, get_args(Method)), adjoint=(adjoint, get_args(Adjoint)), kernel=(kernel, get_args(Kernel)))
+    check(precision=(precision, get_args(Precision)))
+    if kernel != "off" and (method, adjoint) != ("ab4", "forward"):
+        raise ValueError(f"the kernel is for method 'ab4' with adjoint 'forward', found {method!r} with {adjoint!r}")
+    if precision == "mixed" and method == "diffrax":
+        raise ValueError("precision 'mixed' is for the loops of this package, not for method 'diffrax'")
     count = jnp.asarray(capacity) if count is None else count
     run = _by_diffrax if method == "diffrax" else partial(_by_loop, method)
-    position, velocity = run(model, sea, state, start, step, count + EXTRA_STEPS, capacity + EXTRA_STEPS, adjoint)
+    run = run if kernel == "off" else partial(_by_kernel, kernel)
+    position, velocity = run(model, sea, state, start, step, count + EXTRA_STEPS, capacity + EXTRA_STEPS, adjoint, precision)
     rate = jax.vmap(model.position_rate)(position, velocity)
     return Grid(start, step, count, position, rate, differences(rate, step))
 

@@ -18,6 +18,7 @@ from jaxhydro.dynamics.statics import equilibrium, natural_modes
 from jaxhydro.dynamics.table_ranges import check_waves, heading_fault
 from jaxhydro.environment import DOFS
 from jaxhydro.integrators import adams_bashforth
+from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.rotations import rotation
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
@@ -92,8 +93,9 @@ def _simulate(
     steps: int,
     method: Method,
     adjoint: Adjoint,
+    precision: Precision = "double",
 ) -> tuple[Response, Grid]:
-    grid = integrate(model, sea, start, times[0], step, steps, method, adjoint)
+    grid = integrate(model, sea, start, times[0], step, steps, method, adjoint, precision=precision)
     return Response(times, *grid.at(times)), grid
 
 
@@ -107,6 +109,7 @@ def simulate(
     step: float | None = None,
     method: Method | None = None,
     adjoint: Adjoint = "forward",
+    precision: Precision = "double",
 ) -> Response:
     """Simulate the motion of a platform in a sea.
 
@@ -131,16 +134,19 @@ def simulate(
         step: Largest time step (s); the step taken divides the duration. None: the default of the method.
         method: Integration scheme; None: by the sea.
         adjoint: "forward" for jvp, jacfwd and least squares; "reverse" for grad of a scalar (checkpointed).
+        precision: "double", or "mixed" for loads in float32. Waves' phases, positions and their sums over time stay in
+            float64. Not for method "diffrax".
 
     Returns:
         Motion at `times`.
 
     Raises:
-        UnknownName: Another method, adjoint or motion.
+        UnknownName: Another method, adjoint, precision or motion.
         ValueError: Times do not increase, regular waves lie outside a table of the model, or the platform is carried away.
         EquilibriumError: The platform has no static equilibrium.
     """
     check(adjoint=(adjoint, get_args(Adjoint)), method=(method, (*get_args(Method), None)))
+    check(precision=(precision, get_args(Precision)))
     times = jnp.asarray(times, float)
     if times.ndim != 1 or times.shape[0] < 2 or not (np.diff(np.asarray(times)) > 0).all():
         raise ValueError("times must be at least two increasing numbers")
@@ -158,10 +164,11 @@ def simulate(
     if isinstance(sea, IrregularSea) and not sea.long_crested:
         model, sea = model.in_sea(state_of(sea.components)), summed_directly(model, sea)
     if isinstance(sea, IrregularSea):
-        return simulate_irregular(model.in_sea(state_of(sea.components)), sea, start, times, step, method, adjoint).response
+        here = model.in_sea(state_of(sea.components))
+        return simulate_irregular(here, sea, start, times, step, method, adjoint, precision=precision).response
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / step - 1e-9))
-    return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)[0]
+    return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint, precision)[0]
 
 
 @jax.jit
@@ -220,6 +227,7 @@ def simulate_irregular(
     method: Method = "ab4",
     adjoint: Adjoint = "forward",
     margin: float = 0.0,
+    precision: Precision = "double",
 ) -> IrregularSimulation:
     """Simulate in an irregular sea, prepared anew for a larger box where the platform leaves the first.
 
@@ -234,6 +242,7 @@ def simulate_irregular(
         method: Integration scheme.
         adjoint: As in `simulate`.
         margin: Distance (m) that the last box has to spare.
+        precision: As in `simulate`.
 
     Returns:
         The motion, and the sea and steps that were used.
@@ -254,7 +263,7 @@ def simulate_irregular(
     computed: Any = {"transfer": model.transfer, "exciting": model.excitation}
     while True:
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, **computed)
-        found, grid = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
+        found, grid = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint, precision)
         box: Any = model.through(prepared)  # with the box moved where the sea is
         reached = float(_farthest(found.position, jnp.asarray(points), box))
         if not reached + margin > prepared.half:

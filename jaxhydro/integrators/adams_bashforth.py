@@ -68,15 +68,42 @@ def _advance(y, slopes, slope, add, step):
     return y + step * (add @ slopes), slopes
 
 
+def evaluation(
+    driver: Any,
+    index: Int[Array, ""],
+    y: Float[Array, " s"],
+    slopes: Float[Array, "m s"],
+    start: Float[Array, ""],
+    step: Float[Array, ""],
+    rate: Rate,
+) -> tuple[Array, Array, Array, Array]:
+    """One evaluation of the right-hand side.
+
+    Args:
+        driver: First argument of `rate`.
+        index: Number of the evaluation.
+        y: State at the start of its step.
+        slopes: Remembered slopes, newest first.
+        start: First time (s).
+        step: Time step (s).
+        rate: Right-hand side.
+
+    Returns:
+        The state and the remembered slopes after it, the number of its step, and the state at which it was made.
+    """
+    at, add, time, number = _row(index)
+    state = y + step * (at @ slopes)
+    slope = jnp.concatenate(rate(driver, start + step * time, state))
+    return *_advance(y, slopes, slope, add, step), number + jnp.maximum(index - len(ROWS.time) + 1, 0), state
+
+
 def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool, shown: int | None = None):
     def body(index, carry):
         y, slopes, path, taken = carry
-        at, add, time, number = _row(index)
-        path = jax.lax.dynamic_update_index_in_dim(path, y[:shown], number + jnp.maximum(index - len(ROWS.time) + 1, 0), 0)
-        state = y + step * (at @ slopes)
-        slope = jnp.concatenate(rate(driver, start + step * time, state))
+        after, newer, number, state = evaluation(driver, index, y, slopes, start, step, rate)
+        path = jax.lax.dynamic_update_index_in_dim(path, y[:shown], number, 0)
         taken = jax.lax.dynamic_update_index_in_dim(taken, state, index, 0) if keep else None
-        return *_advance(y, slopes, slope, add, step), path, taken
+        return after, newer, path, taken
 
     size = y.shape[0]
     taken = jnp.zeros((evaluations(capacity + 1), size)) if keep else None

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Complex, Float
 
-from jaxhydro.dynamics.integrate import clock, integrate
+from jaxhydro.dynamics.integrate import Kernel, Precision, clock, integrate
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.simulate import excursion_of, farthest, steps_in
 from jaxhydro.dynamics.statics import EquilibriumError, equilibrium
@@ -32,24 +32,33 @@ class SeaMotion(NamedTuple):
 
 
 def simulate_in_halves(
-    model: Model, seas: list[IrregularSea], times: Float[np.ndarray, " t"], limit: float
+    model: Model,
+    seas: list[IrregularSea],
+    times: Float[np.ndarray, " t"],
+    limit: float,
+    kernel: Kernel = "off",
+    precision: Precision = "double",
 ) -> list[SeaMotion | None]:
     """`simulate_together`, with half as many seas at once where memory runs out."""
     if not seas:
         return []
     try:
-        return simulate_together(model, seas, times, limit)
+        return simulate_together(model, seas, times, limit, kernel, precision)
     except jax.errors.JaxRuntimeError:
         half = len(seas) // 2
-        return (
-            simulate_in_halves(model, seas[:half], times, limit) + simulate_in_halves(model, seas[half:], times, limit)
-            if half
-            else [None]
-        )
+        if not half:
+            return [None]
+        halves = (seas[:half], seas[half:])
+        return [one for some in halves for one in simulate_in_halves(model, some, times, limit, kernel, precision)]
 
 
 def simulate_together(
-    model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray, " t"], limit: float
+    model: Model,
+    seas: Sequence[IrregularSea],
+    times: Float[np.ndarray, " t"],
+    limit: float,
+    kernel: Kernel = "off",
+    precision: Precision = "double",
 ) -> list[SeaMotion | None]:
     """Simulate seas that differ in amplitudes, phases and heading only, at once per heading.
 
@@ -58,6 +67,8 @@ def simulate_together(
         seas: The seas.
         times: Output times (s), (t,).
         limit: Largest time step (s).
+        kernel: Whether the time loop is one GPU kernel, as in `integrate`.
+        precision: As in `integrate`.
 
     Returns:
         One motion per sea. None where the platform leaves the box that its sea was prepared for, or has no equilibrium.
@@ -79,7 +90,8 @@ def simulate_together(
         shared, step, steps = shared_preparation(model, seas[same[0][0]], times, limit)
         padded = [own for _, own in same] + [same[-1][1]] * (power_of_two(len(same)) - len(same))
         own, axes = _stacked(padded)
-        position, reached, bound = _vectorised(own, axes, len(padded), shared, points, at, jnp.asarray(step), steps)
+        sizes = (jnp.asarray(step), steps, kernel, precision)
+        position, reached, bound = _vectorised(own, axes, len(padded), shared, points, at, *sizes)
         spectra = [None] * len(padded) if bound is None else np.asarray(bound)
         for (i, _), moved, far, spectrum in zip(same, np.asarray(position), np.asarray(reached), spectra):
             if not far > shared.half:
@@ -114,14 +126,15 @@ def _stacked(each: Sequence[Any]) -> tuple[Any, Any]:
 
 
 @eqx.filter_jit
-def _vectorised(own, axes, count, shared, points, times, step, steps):
+def _vectorised(own, axes, count, shared, points, times, step, steps, kernel, precision):
     like = shared.like
 
     def one(own):
         model, start, amplitude, phase = own
         waves = eqx.tree_at(lambda w: (w.amplitude, w.phase), like.components, (amplitude, phase))
         sea = shared.of(waves)
-        position = integrate(model, sea, start, times[0], step, steps, "ab4").at(times)[0]
+        grid = integrate(model, sea, start, times[0], step, steps, "ab4", kernel=kernel, precision=precision)
+        position = grid.at(times)[0]
         pairs = like.kinds, like.highest_difference
         bound = elevation_spectrum(waves, like.environment, jnp.zeros(2), *pairs) if like.order == 2 else None
         return position, farthest(position, points, model.through(sea)), bound

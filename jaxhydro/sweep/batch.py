@@ -129,7 +129,9 @@ def run_outcome(setup: Setup, run: Run) -> RunResults | str:
     """Results of one run, or the reason why it failed."""
     try:
         sea = sea_of(setup, run)
-        position = np.asarray(simulate(setup.model, setup.times, sea, step=setup.limit).position)
+        position = np.asarray(
+            simulate(setup.model, setup.times, sea, step=setup.limit, precision=setup.plan.precision).position
+        )
         return _results(setup, run, sea, position, elevation(sea, setup.times))
     except Exception as error:  # whatever it is, it is this run's, and the others go on
         return failure_reason(error)
@@ -151,7 +153,9 @@ def run_outcomes(setup: Setup, runs: Sequence[Run]) -> list[RunResults | str]:
                 found[run.number] = run_outcome(setup, run)
         except Exception as error:
             found[run.number] = failure_reason(error)
-    every = dict(zip(seas, simulate_in_halves(setup.model, list(seas.values()), setup.times, setup.limit)))
+    shared = (setup.times, setup.limit)
+    motions = simulate_in_halves(setup.model, list(seas.values()), *shared, precision=setup.plan.precision)
+    every = dict(zip(seas, motions))
     for run in runs:
         if (moved := every.get(run.number)) is not None:
             sea = seas[run.number]

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 from jaxhydro.errors import InputError, Problem, shown
+from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.sweep.sea_states import State, named
 from jaxhydro.sweep.sweep_schema import Grid, Heading, SeaState, Sweep
 from jaxhydro.waves.wave_bands import of_spectra
@@ -98,6 +99,7 @@ class Plan:
     exponents: tuple[float, ...]
     equivalent_frequency: float
     spreading: float | None = None
+    precision: Precision = "double"
 
     def __len__(self) -> int:
         return len(self.cases) * len(self.seeds)
@@ -217,7 +219,10 @@ def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[st
         "motions",
         "time_series",
         "spreading",
+        "precision",
     )
+    if sweep.precision == "mixed":
+        notes.append("loads were computed in float32 (precision: mixed)")
     peaks = [(tp, case.probability * hs**2) for case in cases for hs, tp in case.state.peaks]
     usual = of_spectra([tp for tp, _ in peaks], pace, [weight for _, weight in peaks])
     low, cutoff = (found if given is None else given for given, found in zip((sweep.low, sweep.cutoff), usual))

@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, usual_transient
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import Consistent, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
+from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.sweep.sea_states import OF_SWELL, swell_problems, table_problems
 from jaxhydro.waves.sea import Stretching
 
@@ -148,6 +149,7 @@ class Sweep(Consistent):
     order: Literal[1, 2] = 2
     stretching: Stretching = "vertical"
     diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None = None
+    precision: Precision = "double"
     low: NonNegative | None = None
     cutoff: Positive | None = None
     motions: Annotated[tuple[Dof, ...], Field(min_length=1)] = DOFS  # type: ignore[assignment]

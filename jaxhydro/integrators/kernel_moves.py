@@ -1,0 +1,60 @@
+"""Operations that only move numbers, applied to addresses when a kernel is planned."""
+
+from collections.abc import Sequence
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.extend import core
+
+from jaxhydro.integrators.equations import apply, type_of
+
+MOVES = {"broadcast_in_dim", "reshape", "squeeze", "expand_dims", "concatenate", "slice", "transpose", "rev", "stack", "split"}
+MOVES |= {"unstack", "gather", "dynamic_slice", "scatter", "pad", "tile"}
+
+
+def sources(equation: core.JaxprEqn) -> tuple[int, ...]:
+    """Numbers of an operation's operands that are moved; the others say where."""
+    name = equation.primitive.name
+    if name in ("concatenate", "stack", "pad"):
+        return tuple(range(len(equation.invars)))
+    return (0, 2) if name == "scatter" else (0,)
+
+
+def moved(equation: core.JaxprEqn, addresses: Sequence[np.ndarray], others: Sequence[np.ndarray] = ()) -> list[np.ndarray]:
+    """Addresses of the results.
+
+    Args:
+        equation: The operation.
+        addresses: Addresses of what is moved.
+        others: Indices.
+    """
+    name, how, first = equation.primitive.name, equation.params, addresses[0]
+    if name == "broadcast_in_dim":
+        at = how["broadcast_dimensions"]
+        shape = [1] * len(how["shape"])
+        for dimension, size in zip(at, first.shape, strict=True):
+            shape[dimension] = size
+        return [np.broadcast_to(first.reshape(shape), how["shape"])]
+    if name in ("reshape", "squeeze", "expand_dims"):
+        return [first.reshape(type_of(equation.outvars[0]).shape)]
+    if name == "concatenate":
+        return [np.concatenate(addresses, axis=how["dimension"])]
+    if name == "stack":
+        return [np.stack(addresses, axis=how["axis"])]
+    if name == "slice":
+        strides = how["strides"] or (1,) * first.ndim
+        return [first[tuple(slice(*one) for one in zip(how["start_indices"], how["limit_indices"], strides))]]
+    if name == "transpose":
+        return [first.transpose(how["permutation"])]
+    if name == "rev":
+        return [np.flip(first, how["dimensions"])]
+    if name == "split":
+        return np.split(first, np.cumsum(how["sizes"])[:-1], axis=how["axis"])
+    with jax.ensure_compile_time_eval():
+        if name == "scatter":  # its operation knows the type that it was traced for
+            arrays = [jnp.asarray(one, float) for one in addresses]
+            arrays.insert(1, jnp.asarray(others[0]))
+        else:
+            arrays = [jnp.asarray(one) for one in (*addresses, *others)]
+        return [np.asarray(one).astype(int) for one in apply(equation, arrays)]
