@@ -52,6 +52,8 @@ def sum_of_loads(loads: Sequence[AbstractLoad], now: Instant, memory: tuple[Any,
         force = force + jnp.concatenate([earth[:3] @ now.rotation, earth[3:] @ now.rotation])
     hull, on_strips, on_ends = now.hull, jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
     per_volume, end_mass = total("element_mass", jnp.zeros((2, len(hull.elements.length)))), total("end_mass", on_ends)
+    if (replaced := optional_sum([load.replaces_added_mass() for load in loads])) is not None:
+        per_volume, end_mass = (1 - replaced) * per_volume, (1 - replaced) * end_mass
     line_mass = hull.join(now.over_strips(per_volume) * now.heavy_volume, end_mass)
     on_lines = hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward
     return LoadSum(

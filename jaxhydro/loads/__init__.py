@@ -6,6 +6,7 @@ A new effect is one file in this folder and one line in `LOADS`. Drag laws are i
 from jaxhydro.loads.added_mass import AddedMass
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
+from jaxhydro.loads.computed_added_mass import ComputedAddedMass
 from jaxhydro.loads.computed_excitation import ComputedExcitation
 from jaxhydro.loads.computed_radiation import ComputedRadiation
 from jaxhydro.loads.coulomb_friction import CoulombFriction
@@ -68,6 +69,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "mooring_nonlinearity": MooringNonlinearity,
     "radiation_memory": RadiationMemory,
     "computed_radiation": ComputedRadiation,
+    "computed_added_mass": ComputedAddedMass,
     "hidden_oscillator": HiddenOscillator,
     "nonlinear_hydrostatics": NonlinearHydrostatics,
     "cubic_damping": CubicDamping,

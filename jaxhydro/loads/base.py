@@ -91,6 +91,10 @@ class AbstractLoad(AbstractEffect):
         """
         return None
 
+    def replaces_added_mass(self) -> Float[Array, ""] | None:
+        """Fraction of the added mass of strips and ends that this load replaces (0 to 1), or None."""
+        return None
+
     def fast_displacement(self, memory: Any) -> Float[Array, "2"] | None:
         """Part of the horizontal displacement (m, earth axes) that computed wave forces do not follow, or None.
 

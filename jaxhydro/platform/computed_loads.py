@@ -16,7 +16,7 @@ from jaxhydro.interop.retardation import Realisation, realise
 from jaxhydro.interop.wamit_drift import read_directional_transfer, read_transfer
 from jaxhydro.interop.wamit_excitation import read_directional_excitation, read_excitation
 from jaxhydro.interop.wamit_radiation import read_wamit
-from jaxhydro.loads import AbstractLoad, Buoyancy, ComputedExcitation, ComputedRadiation, DriftTransfer
+from jaxhydro.loads import AbstractLoad, Buoyancy, ComputedAddedMass, ComputedExcitation, ComputedRadiation, DriftTransfer
 from jaxhydro.loads.computed_excitation import CORNER
 from jaxhydro.platform import schema as schema
 from jaxhydro.platform.computed_hydrostatics import hydrostatic_stiffness
@@ -58,6 +58,22 @@ def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRa
     space = found.space
     rates, drive, output = map(jnp.asarray, (space.rates, space.drive, space.output))
     return ComputedRadiation(rates, drive, output, jnp.asarray(share), highest), found
+
+
+def added_mass_of(declared: schema.Radiation, found: RadiationCoefficients) -> ComputedAddedMass | None:
+    """Added mass of a file at infinite frequency, where the platform file takes it or `diagnose` may; else None.
+
+    Raises:
+        InputError: It is to be taken, and the file lacks it.
+    """
+    taken = declared.use == "load" and declared.added_mass == "file"
+    if found.infinite is None and declared.added_mass == "file":
+        expected = "a file with added mass at infinite frequency (in WAMIT's .1 the rows with PER = 0)"
+        raise InputError(declared.file, [Problem("radiation.added_mass", expected, "none in it")])
+    if found.infinite is None or not (taken or declared.use == "candidate"):
+        return None
+    symmetric = 0.5 * (found.infinite + found.infinite.T)
+    return ComputedAddedMass(jnp.asarray(symmetric), jnp.asarray(float(taken)))
 
 
 @lru_cache(maxsize=8)
@@ -177,6 +193,8 @@ def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[Abstr
     if (radiates := platform.radiation) is not None:
         radiation, realised = radiation_of(radiates, water.density)
         loads.append(radiation)
+        if (added := added_mass_of(radiates, realised.coefficients)) is not None:
+            loads.append(added)
         remarks += realised.remarks
         if radiates.kind == "wamit":
             columns.append(Column(radiates.file, realised.coefficients.omega, radiates.by))

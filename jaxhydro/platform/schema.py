@@ -302,13 +302,14 @@ class Hydrostatics(FromFile):
 class Radiation(FromFile):
     """Radiation damping from another program: WAMIT's `.1`, Capytaine's `.nc` or Nemoh's `.tec`.
 
-    A state space of at most `order` states follows it to `tolerance`. `use`: part of the model, or a candidate of
-    `diagnose`.
+    A state space of at most `order` states follows it to `tolerance`. `added_mass`: that of the members at infinite frequency,
+    or the file's in its place. `use`: part of the model, or a candidate of `diagnose`.
     """
 
     endings = {".1": "wamit", ".nc": "capytaine", ".tec": "nemoh"}
 
     by: By = "period"
+    added_mass: Literal["members", "file"] = "members"
     tolerance: Annotated[float, Field(strict=True, gt=0, lt=1)] = 0.01
     order: Annotated[int, Field(strict=True, ge=2, le=200)] = 40
     use: Literal["load", "candidate"] = "load"

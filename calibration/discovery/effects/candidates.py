@@ -11,6 +11,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     AbstractLoad,
+    ComputedAddedMass,
     ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
@@ -173,6 +174,7 @@ TABLE_EFFECTS = {
     "computed_radiation": TableEffect(
         ComputedRadiation, False, "forced oscillation at three periods, or a decay in each motion from a small amplitude"
     ),
+    "computed_added_mass": TableEffect(ComputedAddedMass, False, "forced oscillation at a short period, its forces measured"),
 }
 
 

@@ -110,8 +110,9 @@ RADIATION = (
 ROLL_RADIATION = JUDGEMENT + "roll and pitch radiate less than heave: a fifth of moving mass times (g/L)^(1/2) at most."
 GRAHAM = "Graham 1980, Journal of Fluid Mechanics 97, 331-346: -1/3 at sharp edges, 0 at square ones; twice that either way."
 SHARE_OF_TABLE = (
-    JUDGEMENT + "none of a program's forces, or all of them. Basins agree with programs within 10 % in excitation, 20 % in "
-    "radiation and 30 % in drift (one standard deviation)."
+    JUDGEMENT
+    + "none of a program's forces, or all of them. Basins agree with programs within 10 % in excitation and added mass, "
+    "20 % in radiation and 30 % in drift (one standard deviation)."
 )
 PRESSURE = JUDGEMENT + "shading and diffraction change the Froude-Krylov force of slender members by 40 % at most."
 
@@ -166,6 +167,7 @@ RANGES: dict[str, Rule] = {
     "wave_excitation.*": _share(-0.4, 0.4, ref.unity, PRESSURE),
     "computed_excitation.share": _table(0.1),
     "computed_radiation.share": _table(0.2),
+    "computed_added_mass.share": _table(0.1),
     "drift_transfer.share": _table(0.3),
 }
 """Rules by pattern of labels; the first that fits counts."""

@@ -20,6 +20,7 @@ from jaxhydro.loads import (
     AddedMass,
     Buoyancy,
     CatenaryLines,
+    ComputedAddedMass,
     ComputedExcitation,
     ComputedRadiation,
     DriftTransfer,
@@ -38,7 +39,7 @@ from jaxhydro.loads import (
 RIPPLE = 1e-6  # m, height of the waves of a deck with the keyword MCF: SeaState has none of it in still water
 GRID_MARGIN = 50.0  # m, of SeaState's grid beyond the hull, and below it
 WRITTEN = (
-    *(AddedMass, Buoyancy, CatenaryLines, ComputedExcitation, ComputedRadiation, DriftTransfer, EndInertia),
+    *(AddedMass, Buoyancy, CatenaryLines, ComputedAddedMass, ComputedExcitation, ComputedRadiation, DriftTransfer, EndInertia),
     *(HydrostaticCoupling, LinearDamping, MooringLines, MorisonDrag, QuadraticDamping, Stiffness, StripInertia),
     *(TensionTableLines, Weight),
 )

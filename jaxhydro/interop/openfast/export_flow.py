@@ -27,6 +27,7 @@ from jaxhydro.interop.openfast.table_row import to_number
 from jaxhydro.loads import (
     AddedMass,
     Buoyancy,
+    ComputedAddedMass,
     ComputedExcitation,
     ComputedRadiation,
     DriftTransfer,
@@ -192,12 +193,15 @@ def _infinite(model: Model, flow: ExportedFlow) -> Iterator[str]:
     if added.any():
         flow.say("added_mass", Treatment.TAKEN, f"Rows of PER = 0 in {ROOT}.1.")
     if flow.excitation:
-        strips = tuple(load for load in model.loads if isinstance(load, StripInertia | EndInertia))
+        strips = tuple(load for load in model.loads if isinstance(load, StripInertia | EndInertia | ComputedAddedMass))
         own = np.asarray(linearised(replace(model, loads=strips), jnp.zeros(6))[0]) if strips else np.zeros((6, 6))
         own = own - np.asarray(model.body.mass_matrix()) if strips else own
         added = added + np.where(np.abs(own) > 1e-9 * np.abs(own).max(), own, 0.0)
         text = f"Added mass of members, upright in still water, in rows of PER = 0 of {ROOT}.1: PropPot TRUE leaves drag alone."
         flow.say("coefficients: Ca_t, Ca_z", Treatment.APPROXIMATED, text)
+    elif any(isinstance(one, ComputedAddedMass) and float(one.share) for one in model.loads):
+        text = "Members keep their own added mass (Ca): without a table of excitation HydroDyn has no other place for it."
+        flow.say("radiation: added_mass", Treatment.LEFT_OUT, text)
     density = float(model.environment.density)
     for i in range(6):
         for j in range(6):
