@@ -305,9 +305,11 @@ def _with_memories(
             omega = float(np.sqrt(square[i]))
             response = sum(np.asarray(load.retardation(omega)) for load in memories)
             found, shapes = np.linalg.eig(np.linalg.solve(mass + response.imag / omega, stiffness))
-            along = scale * vectors[:, i]
-            scaled = scale[:, None] * shapes.real
-            same = int(np.argmax(np.abs(along @ scaled) / np.linalg.norm(scaled, axis=0)))
+            old, new = (scale[:, None] * one / np.linalg.norm(scale[:, None] * one, axis=0) for one in (vectors, shapes.real))
+            alike = np.abs(old.T @ new)
+            # of two modes with nearly one frequency, such as roll and pitch, each takes the shape that the other is less like
+            own = alike.argmax(axis=0) == i
+            same = int(np.argmax(np.where(own, alike[i], 0.0) if own.any() else alike[i]))
             change = abs(found[same].real - square[i])
             square[i], vectors[:, i] = found[same].real, shapes[:, same].real
             if square[i] <= 0 or change < MODE_TOLERANCE * square[i]:

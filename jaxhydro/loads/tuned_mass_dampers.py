@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
+from jaxhydro.environment import STANDARD_GRAVITY
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import Parameter, parameters
@@ -35,6 +36,7 @@ class TunedMassDampers(AbstractLoad):
         mass: Masses (kg) by name.
         period: Periods (s) of the dampers with the hull held, by name.
         damping_ratio: Damping ratios (-) with the hull held, by name.
+        gravity: Acceleration of gravity (m/s²) of the natural modes.
     """
 
     names: tuple[str, ...] = eqx.field(static=True)
@@ -49,20 +51,23 @@ class TunedMassDampers(AbstractLoad):
     damping_ratio: Mapping[str, Float[Array, ""] | float] = parameters(
         lambda load, name: Parameter("-", f"damping ratio of the damper {name}, the hull held", 0.0, 1.0)
     )
+    gravity: float = eqx.field(static=True, default=STANDARD_GRAVITY)
     source: ClassVar[str] = "Den Hartog 1956, Mechanical Vibrations, section 3.2, the dynamic vibration absorber"
 
     def rest(self) -> Float[Array, "2 k"]:
         return jnp.zeros((2, len(self.names)))
 
     def retardation(self, omega: float) -> Complex[np.ndarray, "6 6"]:
-        """Response of the masses along their lines with the dampers held: i omega times their mass, (6, 6).
+        """Response of the masses along their lines with the dampers held: of their inertia, and of their weight on a lean.
 
         Natural modes of the hull are those with its dampers held.
         """
         added = np.zeros((6, 6))
         for name, point, direction in zip(self.names, np.asarray(self.points), np.asarray(self.directions), strict=True):
             lever = np.concatenate([direction, np.cross(point, direction)])
-            added += float(self.mass[name]) * np.outer(lever, lever)
+            lean = np.concatenate([np.zeros(3), np.cross([0.0, 0.0, 1.0], direction)])
+            weight = self.gravity * np.outer(lever, lean)  # per mass, along the line: it makes the hull less stiff
+            added += float(self.mass[name]) * (np.outer(lever, lever) + weight / omega**2)
         return 1j * omega * added
 
     def act(self, now: Instant, memory: Any) -> Action:

@@ -20,7 +20,7 @@ def damper_loads(platform: Platform) -> list[AbstractLoad]:
         mass = {damper.name: damper.mass for damper in masses}
         period, ratio = ({damper.name: damper.tuning()[k] for damper in masses} for k in (0, 1))
         points, lines = _rows([damper.point for damper in masses]), _rows([damper.line() for damper in masses])
-        found.append(TunedMassDampers(tuple(mass), points, lines, mass, period, ratio))
+        found.append(TunedMassDampers(tuple(mass), points, lines, mass, period, ratio, platform.water.gravity))
     if tubes := platform.liquid_column_dampers:
         area, loss = {damper.name: damper.area for damper in tubes}, {damper.name: damper.head_loss for damper in tubes}
         points, lines = _rows([damper.point for damper in tubes]), _rows([damper.line() for damper in tubes])

@@ -22,6 +22,7 @@ from jaxhydro.loads import (
     AddedMass,
     Buoyancy,
     CatenaryLines,
+    ComputedAddedMass,
     ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
@@ -221,7 +222,7 @@ def in_water(model: jh.Model) -> jh.Model:
     ]
     drag = [MorisonDrag({key: COEFFICIENTS[f"Cd_{key[1]}"] for key in keys}, law) for keys, law in laws.items()]
     others = (CoveredEnds, Current, CurrentProfile, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
-    computed = (DriftTransfer(TRANSFER), ComputedExcitation(EXCITATION))
+    computed = (DriftTransfer(TRANSFER), ComputedExcitation(EXCITATION), ComputedAddedMass(jnp.eye(6)))
     drift = (
         CoupledDamping({"B15": 0.0}),
         CoupledStiffness({"C15": 0.0}),

@@ -21,7 +21,7 @@ from calibration.discovery.effects.candidates import requested_table_labels, wit
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import NoticeableScales
 from jaxhydro.dynamics.simulate import default_step, memory_step
-from jaxhydro.dynamics.statics import natural_modes
+from jaxhydro.dynamics.statics import linearised, natural_modes
 from jaxhydro.errors import InputError
 from jaxhydro.interop.capytaine_radiation import read_capytaine
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
@@ -394,6 +394,29 @@ def test_a_platform_file_names_its_coefficients(tmp_path: Path) -> None:
     peak = np.abs(first.transfer(omega)).max(axis=0)
     assert_allclose(second.transfer(omega), first.transfer(omega), atol=1e-5 * peak.max(), rtol=1e-3)
     assert_allclose(first.transfer(omega)[:, 2, 2], transfer(omega) * SHAPE[2, 2], atol=0.03 * SHAPE[2, 2])
+
+
+def test_added_mass_of_the_file_takes_the_place_of_the_members_own(tmp_path: Path) -> None:
+    """All, half or none of it; that of members goes with it. A file without it is refused where it is asked for."""
+
+    def added(model: jh.Model) -> np.ndarray:
+        return np.asarray(linearised(model, jnp.zeros(6))[0]) - np.asarray(model.body.mass_matrix())
+
+    of_members, of_file = (jh.load_model(folder(tmp_path, added_mass=kind)) for kind in ("members", "file"))
+    table = read_wamit(tmp_path / "hull.1", 1025.0, 2.0).infinite
+    assert table is not None and np.abs(added(of_members) - table).max() > 0.1 * np.abs(table).max()
+    small = {"atol": 1e-9 * np.abs(table).max()}
+    assert_allclose(added(of_file), table, **small)
+    half = of_file.with_values({"computed_added_mass.share": 0.5})
+    assert_allclose(added(half), 0.5 * (table + added(of_members)), **small)
+    candidate = jh.load_model(folder(tmp_path, use="candidate"))
+    assert_allclose(added(candidate), added(of_members), **small)
+    assert requested_table_labels(candidate) == {"computed_radiation.share", "computed_added_mass.share"}
+    path = folder(tmp_path, added_mass="file")
+    rows = (tmp_path / "hull.1").read_text().splitlines()
+    (tmp_path / "hull.1").write_text("\n".join(row for row in rows if not row.lstrip().startswith("0.000000000E+00 ")))
+    with pytest.raises(InputError, match=r"radiation\.added_mass: expected a file with added mass at infinite frequency"):
+        jh.load_model(path)
 
 
 @pytest.mark.parametrize(
