@@ -26,6 +26,7 @@ from benchmarks.evidence import (
     coverage,
     diagnoses,
     focal_laboratory,
+    focal_tables,
     global_search,
     hulls,
     identified,
@@ -55,6 +56,7 @@ SECTIONS = (
     "measured",
     "measured_waves",
     "focal_laboratory",
+    "focal_tables",
     "tuned_seas",
     "classical_bias",
     "starts",
@@ -105,6 +107,7 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         "openfast_waves": openfast_waves,
         "measured": measured,
         "focal_laboratory": focal_laboratory,
+        "focal_tables": focal_tables,
         "study": study_text,
     }
     return plain[name].run(figures)
