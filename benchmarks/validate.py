@@ -33,6 +33,7 @@ from benchmarks.evidence import (
     lacking,
     measured,
     measured_waves,
+    mooring_lines,
     numerical_tank,
     openfast,
     openfast_waves,
@@ -51,6 +52,7 @@ SECTIONS = (
     "identified",
     "periods",
     "hulls",
+    "mooring_lines",
     "openfast",
     "openfast_waves",
     "measured",
@@ -103,6 +105,7 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
     plain = {
         "periods": periods,
         "hulls": hulls,
+        "mooring_lines": mooring_lines,
         "openfast": openfast,
         "openfast_waves": openfast_waves,
         "measured": measured,
