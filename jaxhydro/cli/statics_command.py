@@ -14,7 +14,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.static_forces import LineState, forces_by_load, line_states, mooring_stiffness, offset_curve
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
-from jaxhydro.loads.any_lines import AnyLines
+from jaxhydro.loads import AnyLines
 from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import load_platform

@@ -14,7 +14,7 @@ from jaxhydro.dynamics.newton_euler import sum_of_loads
 from jaxhydro.dynamics.state import State
 from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
-from jaxhydro.loads.any_lines import AnyLines
+from jaxhydro.loads import AnyLines
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
 from jaxhydro.loads.stiffness import Stiffness
 from jaxhydro.loads.tension_table_lines import TensionTableLines

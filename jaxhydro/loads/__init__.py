@@ -86,4 +86,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "wave_excitation": WaveExcitation,
 }
 
-__all__ = ["LOADS", "AbstractLoad", "Action", "Instant", "Parameter", *(load.__name__ for load in LOADS.values())]
+AnyLines = MooringLines | CatenaryLines | TensionTableLines
+"""Loads with a method `tension`: the tension of each line, and the unit vectors to the anchors."""
+
+__all__ = ["LOADS", "AbstractLoad", "AnyLines", "Action", "Instant", "Parameter", *(load.__name__ for load in LOADS.values())]

@@ -1,13 +1,12 @@
 """Elastic ropes whose tension is a table over stretch or strain."""
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
-from scipy.interpolate import PchipInterpolator
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
@@ -25,28 +24,6 @@ class TensionTable(NamedTuple):
 
     start: Float[Array, " n"]
     cubic: Float[Array, "4 n"]
-
-    @classmethod
-    def of(cls, stretch: Float[np.ndarray, " n"], tension: Float[np.ndarray, " n"], interpolation: str) -> Self:
-        """Table of entries, straight or monotone between them; beyond the last as steep as there.
-
-        Args:
-            stretch: Stretch (m) or strain (-), rising from 0.
-            tension: Tension (N), from 0.
-            interpolation: `linear`, or `pchip` for a monotone cubic with a continuous slope.
-
-        References:
-            Fritsch and Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, as in SciPy's PchipInterpolator.
-        """
-        stretch, tension = np.asarray(stretch, float), np.asarray(tension, float)
-        if interpolation == "pchip" and len(stretch) > 2:
-            curve = PchipInterpolator(stretch, tension)
-            inner, slope = curve.c, float(curve(stretch[-1], 1))
-        else:
-            slopes = np.diff(tension) / np.diff(stretch)
-            inner, slope = np.stack([0 * slopes, 0 * slopes, slopes, tension[:-1]]), slopes[-1]
-        beyond = np.array([[0.0], [0.0], [slope], [tension[-1]]])
-        return cls(jnp.asarray(stretch), jnp.asarray(np.concatenate([inner, beyond], axis=1)))
 
     def tension(self, stretch: Float[Array, " l"]) -> Float[Array, " l"]:
         """Tension (N) at a stretch (m) or strain (-); none where that is below 0."""
@@ -82,7 +59,7 @@ class TensionTableLines(AbstractLoad):
     over_strain: tuple[bool, ...] = eqx.field(static=True)
     rope_of: tuple[int, ...] = eqx.field(static=True)
     unstretched_length: Mapping[str, Float[Array, ""] | float] = parameters(
-        lambda load, rope: Parameter("m", f"unstretched length of {rope}", 0.0)
+        lambda load, rope: Parameter("m", f"unstretched length of {rope}", 0.0, neutral=1.0)
     )
     tension_factor: Mapping[str, Float[Array, ""] | float] = parameters(
         lambda load, rope: Parameter("-", f"factor on the tension of {rope}", 0.0)

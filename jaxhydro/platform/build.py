@@ -22,6 +22,7 @@ from jaxhydro.jax_settings import need_float64
 from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
+    AnyLines,
     Buoyancy,
     EndInertia,
     GuidedMasses,
@@ -34,7 +35,6 @@ from jaxhydro.loads import (
     StripInertia,
     Weight,
 )
-from jaxhydro.loads.any_lines import AnyLines
 from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import with_exponents
 from jaxhydro.parameters import strongly_typed

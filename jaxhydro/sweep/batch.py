@@ -20,7 +20,7 @@ from jaxhydro.dynamics.simulate import largest_step, simulate
 from jaxhydro.dynamics.statics import EquilibriumError
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.loads.any_lines import AnyLines
+from jaxhydro.loads import AnyLines
 from jaxhydro.platform.build import model_of
 from jaxhydro.platform.schema import load_platform
 from jaxhydro.rotations import rotation

@@ -29,7 +29,7 @@ def recorded(*kinds, scale: float = 1.0) -> tuple[Run, IrregularSea]:
     time = np.arange(0.0, 900.0, 0.5)
     waves = spectrum_components(lambda w: jonswap(w, 5.0 * scale, 9.0), 900.0, WATER, low=BAND[0], cutoff=BAND[1], seed=3)
     wave = np.asarray(IrregularSea(waves, WATER, 2 if kinds else 1, kinds=kinds or ALL).gauge(time))
-    records = (dataclasses.make_dataclass("Record", ["noise"])({"wave": 1e-3}),)
+    records = (dataclasses.make_dataclass("Record", ["noise", "kind"])({"wave": 1e-3}, "irregular"),)
     run = Run("sea.csv", time, wave, (0.0, 0.0), 0.0, records, ())
     return run, sea_of(run, WATER, Options(low=BAND[0], cutoff=BAND[1])).sea
 

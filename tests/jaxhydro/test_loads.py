@@ -63,8 +63,8 @@ from jaxhydro.loads.drag import (
     SpeedPowerLaw,
     SuctionSideLaw,
 )
-from jaxhydro.loads.tension_table_lines import TensionTable
 from jaxhydro.parameters import AbstractEffect
+from jaxhydro.platform.tension_table_build import tension_table
 from jaxhydro.sensors import SENSOR_EFFECTS, SensorLag, SensorReference
 from jaxhydro.water import WATER_EFFECTS, Current, CurrentProfile, WaveGaugePosition, WaveReflection
 from jaxhydro.waves.excitation import Excitation
@@ -135,8 +135,8 @@ ROPES = TensionTableLines(
     jnp.array([[-600.0, 90.0], [0.0, 40.0], [-100.0, -60.0]]),
     jnp.array([[-58.0, 20.0], [0.0, 10.0], [-14.0, -14.0]]),
     (
-        TensionTable.of(np.array([0.0, 0.01, 0.03, 0.1]), np.array([0.0, 1e5, 8e5, 9e6]), "pchip"),
-        TensionTable.of(np.array([0.0, 2.0, 4.0]), np.array([0.0, 1e5, 5e5]), "linear"),
+        tension_table(np.array([0.0, 0.01, 0.03, 0.1]), np.array([0.0, 1e5, 8e5, 9e6]), "pchip"),
+        tension_table(np.array([0.0, 2.0, 4.0]), np.array([0.0, 1e5, 5e5]), "linear"),
     ),
     (True, False),
     (0, 1),

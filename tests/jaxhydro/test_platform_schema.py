@@ -305,7 +305,11 @@ BROKEN: list[tuple[str, Any, str]] = [
     ("quadratic_damping", {"B15": 1.0}, "quadratic_damping.B15: expected a key among the diagonal entries"),
     ("added_mass", 5.0, "added_mass: expected a mapping, found 5.0"),
     ("mooring", "none", "mooring: expected a mapping with `kind` ... found 'none'"),
-    ("mooring.kind", ..., "mooring.kind: expected one of none, linear_springs, catenary, stiffness_matrix, found nothing"),
+    (
+        "mooring.kind",
+        ...,
+        "mooring.kind: expected one of none, linear_springs, catenary, tension_table, stiffness_matrix, found nothing",
+    ),
     ("mooring.kind", "linear_spring", "mooring.kind: expected one of ... Did you mean 'linear_springs'?"),
     ("mooring.lines", [], "mooring.lines: expected a list of mappings (1 or more), found []"),
     ("mooring.lines.0.pretension", ..., "mooring.lines[0].pretension: expected a number, since stiffness is given"),

@@ -100,7 +100,7 @@ def test_runs_are_those_of_simulate_and_go_on_whether_long_crested_or_not(tmp_pa
     assert shares_in_band(plan)[1] == pytest.approx(float(0.5 * (found.components.amplitude**2).sum()) / (5.0 / 16), rel=1e-9)
     together = []
     monkeypatch.setattr(batch, "run_outcome", lambda setup, run: f"alone {run.number}")
-    monkeypatch.setattr(batch, "simulate_in_halves", lambda model, seas, *_: together.extend(seas) or [None] * len(seas))
+    monkeypatch.setattr(batch, "simulate_in_halves", lambda model, seas, *_, **__: together.extend(seas) or [None] * len(seas))
     assert run_outcomes(setup, [plan.run(i) for i in range(3)]) == ["alone 0", "alone 1", "alone 2"]
     assert [sea.long_crested for sea in together] == [True]
 

@@ -13,9 +13,9 @@ import jaxhydro as jh
 from jaxhydro.dynamics.static_forces import line_states, mooring_stiffness
 from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import MooringLines, TensionTableLines
-from jaxhydro.loads.tension_table_lines import TensionTable
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import Platform
+from jaxhydro.platform.tension_table_build import tension_table
 from jaxhydro.rotations import rotation
 
 ANCHOR, FAIRLEAD = [500.0, 0.0, -100.0], [20.0, 0.0, -10.0]
@@ -66,7 +66,7 @@ def ropes(of: jh.Model) -> TensionTableLines:
 def test_a_straight_table_is_a_spring(interpolation: str) -> None:
     stiffness = 3e4
     stretch = np.array([0.0, 1.0, 3.0, 8.0])
-    table = TensionTable.of(stretch, stiffness * stretch, interpolation)
+    table = tension_table(stretch, stiffness * stretch, interpolation)
     anchor, fairlead = jnp.array(ANCHOR)[:, None], jnp.array(FAIRLEAD)[:, None]
     rope = TensionTableLines(anchor, fairlead, (table,), (False,), (0,), {"rope1": 488.0}, {"rope1": 1.0})
     spring = MooringLines(anchor, fairlead, {"line1": stiffness}, {"line1": 488.0})

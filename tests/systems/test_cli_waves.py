@@ -205,7 +205,7 @@ BAD = [
     ([*SEA, "--cutoff", 0.02], "--cutoff: a number above --low, 0.03 Hz, expected, found 0.02"),
     ([*SEA, "--low", -0.1], "--low: a number from 0 on expected"),
     ([*SEA, "--cutoff", "inf"], "--cutoff: a finite number expected"),
-    ([*SEA, "--order", 3], "'--order'"),
+    ([*SEA, "--order", 3], "--order: 1 or 2 expected in irregular waves, found 3"),
     ([*SEA, "--stretching", "delta"], "'delta' is not one of 'none', 'vertical'"),
     ([*SEA, "--duration", 0], "--duration: a number > 0 expected, found 0"),
     ([*SEA, "--duration", 300, "--transient", 300], "--transient: from 0 to less than the duration, 300 s, expected"),
