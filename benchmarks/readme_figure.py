@@ -1,55 +1,60 @@
-"""The README's picture, of numbers in docs/validation.md: `python -m benchmarks.readme_figure`."""
+"""The README's picture: slow surge of a sea that was not fitted, from a diagnosis of FOCAL campaign 2 with its tables.
 
-import re
+    python -m benchmarks.readme_figure FOLDER
+
+FOLDER holds what `jaxhydro diagnose` wrote, such as the results of `python -m benchmarks.validate --only lacking`.
+"""
+
+import argparse
 from pathlib import Path
 
+import numpy as np
+import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from benchmarks.evidence.lacking import CASES, DRAWN, MOTIONS, PAPER
-from jaxhydro.plots.style import BEFORE, GREY, SIMULATED, save, style
+from benchmarks.evidence.common import within
+from jaxhydro.analysis.spectral import bands
+from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, save, style
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
-LOW_BEFORE, LOW_AFTER = 3, 4  # columns of the table of seas
-ROW = re.compile(r"\| sea-8m \| holdout \|.*\|")
+PICTURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "closed-loop.png"
+TEST, PEAK_PERIOD = "sea-8m", 12.5  # s
+SHOWN = 1000.0  # s
+LOOKS = {
+    "measured": (MEASURED, 2.2, "measured"),
+    "before": (BEFORE, 1.3, "strip model fitted to two lower seas"),
+    "simulated": (SIMULATED, 1.2, "the same with what jaxhydro found missing"),
+}
 
 
-def low_frequency_errors(text: str) -> dict[str, tuple[float, float]]:
-    """Errors (%) of low-frequency energy before and after, by motion, in the sea that was not fitted."""
-    section = text.split(f"### {CASES[DRAWN]}")[1].split("\n### ")[0]
-    rows = [[cell.strip() for cell in row.strip("|").split("|")] for row in ROW.findall(section)]
-    return {row[2]: (float(row[LOW_BEFORE].rstrip(" %")), float(row[LOW_AFTER].rstrip(" %"))) for row in rows}
+def draw(folder: Path, path: Path) -> None:
+    """Draw measured and simulated slow surge.
 
-
-def draw(errors: dict[str, tuple[float, float]], path: Path) -> None:
-    """Bars by motion: the published model, the fitted one, and the one with what was found."""
-    looks = (
-        ("best published case, tuned to decays (Sarker et al. 2025)", GREY),
-        ("strips fitted to two lower seas", BEFORE),
-        ("the same with what jaxhydro found missing", SIMULATED),
-    )
-    published = dict(zip(MOTIONS, (100 * error for error in PAPER["low_frequency"]), strict=True))
-    with style():
+    Args:
+        folder: Results of the diagnosis.
+        path: The picture.
+    """
+    low, high = bands("surge", PEAK_PERIOD)["low_frequency"]
+    with xr.open_dataset(folder / "simulated.nc") as motion, style():
+        here = motion.sel(test=TEST, channel="surge")
+        time = here.time.values - here.time.values[0]
         figure = Figure(figsize=(6.0, 2.7), layout="constrained")
         FigureCanvasAgg(figure)
         ax = figure.subplots()
-        for i, (label, colour) in enumerate(looks):
-            values = [(published[motion], *errors[motion])[i] for motion in MOTIONS]
-            places = [k + 0.27 * (i - 1) for k in range(len(MOTIONS))]
-            bars = ax.bar(places, values, 0.25, color=colour, label=label)
-            ax.bar_label(bars, [f"{value:+.0f} %" for value in values], padding=2)
-        ax.axhline(0.0, color="#30343b", lw=1.0)
-        ax.set_xticks(range(len(MOTIONS)), [f"slow {motion}" for motion in MOTIONS])
-        ax.tick_params(axis="x", length=0)
-        ax.set_ylabel("Error of energy (0: as measured)")
-        ax.set_yticks([-100, 0, 100], ["-100 %", "0", "+100 %"])
-        ax.set_ylim(-105, 150)
-        ax.grid(axis="x", visible=False)
-        title = "Slow motion of a 1:70 floating-wind platform in a sea that was not fitted"
+        for kind, (colour, width, label) in LOOKS.items():
+            values = within(here[kind].values, low, high, float(np.diff(time[:2])[0]))
+            some = time[: len(values)] < SHOWN
+            ax.plot(time[: len(values)][some], values[some], color=colour, lw=width, label=label)
+        ax.set_xlabel("Time (s)")
+        ax.set_ylabel("Slow surge (m)")
+        ax.margins(x=0.0)
+        title = "A 1:70 floating-wind platform in a sea that was not fitted"
         legend = figure.legend(loc="outside upper left", title=title, alignment="left", ncols=1)
         legend.get_title().set_fontweight("bold")
         save(figure, path)
 
 
 if __name__ == "__main__":
-    draw(low_frequency_errors((DOCS / "validation.md").read_text(encoding="utf-8")), DOCS / "figures" / "closed-loop.png")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    draw(parser.parse_args().folder, PICTURE)
