@@ -4,6 +4,8 @@ import dataclasses
 import math
 from pathlib import Path
 
+import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pandas as pd
@@ -142,9 +144,13 @@ def test_added_mass_does_not_follow_the_wetting() -> None:
     load = ComputedExcitation(Excitation.of(GRID, forces()), 1.0)
     rest, wet = (build(COLUMN, PONTOON, wetting=wetting) for wetting in ("mean", "instantaneous"))
 
+    @eqx.filter_jit
+    def of(model: jh.Model, position: jax.Array) -> jax.Array:
+        state = jh.State(position, jnp.zeros(6), model.rest().memory)
+        return model.sum_of_loads(model.instant(jnp.asarray(20.0), state, sea), state.memory).masses
+
     def masses(model: jh.Model, position: np.ndarray) -> np.ndarray:
-        state = jh.State(jnp.asarray(position), jnp.zeros(6), model.rest().memory)
-        return np.asarray(model.sum_of_loads(model.instant(jnp.asarray(20.0), state, sea), state.memory).masses)
+        return np.asarray(of(model, jnp.asarray(position)))
 
     expected = masses(rest, heaved)
     with_force = wet.with_effect(load)
