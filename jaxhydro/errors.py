@@ -22,6 +22,10 @@ Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
 Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
 Flag = Annotated[bool, Field(strict=True)]
+Seed = Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)]
+MAX_SPREADING = 1e4
+Gamma = Annotated[float, Field(strict=True, ge=1, le=7)]  # peak enhancement of JONSWAP
+Spreading = Annotated[float, Field(strict=True, ge=0, le=MAX_SPREADING)]  # exponent s
 Text = Annotated[str, Field(strict=True, min_length=1)]
 Vector = tuple[Number, Number, Number]
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from jaxhydro.errors import Faults, Number, Positive, Problem, Schema, shown
-
-Spreading = Annotated[float, Field(strict=True, ge=0, le=1e4)]
+from jaxhydro.errors import Faults, Gamma, Number, Positive, Problem, Schema, Seed, Spreading, shown
 
 
 class System(Schema):
@@ -16,7 +14,7 @@ class System(Schema):
 
     hs: Positive
     tp: Positive
-    gamma: Annotated[float, Field(strict=True, ge=1, le=7)] | None = None
+    gamma: Gamma | None = None
     heading: Number = 0.0
     spreading: Spreading | None = None
     spectrum: Literal["jonswap", "pierson-moskowitz"] = "jonswap"
@@ -35,7 +33,7 @@ class Sea(Schema):
     heading: Number = 0.0
     spreading: Spreading | None = None
     systems: tuple[System, ...] = ()
-    seed: Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)] = 0
+    seed: Seed = 0
 
     @model_validator(mode="after")
     def _one_of_them(self) -> Sea:

@@ -13,6 +13,7 @@ from jaxtyping import Array, Float, Int
 from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.integrators import adams_bashforth, mixed_precision, runge_kutta
+from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.support_sea import Clock
 
@@ -22,7 +23,6 @@ Kernel = Literal["off", "gpu", "interpreted"]
 EXTRA_STEPS = 2  # steps, so that differences at the last one are central
 MOTION_SIZE = 12  # entries of the state before the loads' memories: position and velocity
 MAX_SEPARATE_STATE = 32  # entries of a state beyond which a forward derivative runs along with the simulation
-Precision = mixed_precision.Precision
 Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 

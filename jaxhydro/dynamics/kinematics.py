@@ -46,7 +46,7 @@ def instant(
     cylinders: Cylinders | None = None,
     current: Callable[[Float[Array, " p"]], Float[Array, "3 p"] | None] = lambda _: None,
     replaced: Float[Array, ""] | None = None,
-    fast: Float[Array, "2"] | None = None,
+    fast_displacement: Float[Array, "2"] | None = None,
 ) -> Instant:
     """Motion, submerged geometry and flow at an instant.
 
@@ -61,13 +61,12 @@ def instant(
         cylinders: Strips, then ends, that diffract the waves.
         current: Steady current (m/s, earth axes) at heights over still water (m), or None.
         replaced: Fraction of the strips' inertial wave load that other loads replace.
-        fast: Part of the horizontal displacement (m) that those other loads do not follow.
+        fast_displacement: Part of the horizontal displacement (m) that those other loads do not follow.
 
     Returns:
         What the loads read.
     """
     matrix = rotation(position[3:])
-    excited = _origin(position if fast is None else position.at[:2].add(-fast), matrix, conventions)[0]
     hull = hull if conventions.directions == "body" else hull.turned(matrix.T)
     submerged = _submerged(time, position, matrix, sea, hull, conventions)
     lines, still = _lines(velocity, submerged, hull, conventions)
@@ -80,12 +79,15 @@ def instant(
     strip_flow, end_flow = _flow_past(flow, still, submerged, matrix, hull)
     covered, extent, shape = submerged.covered, submerged.extent, hull.strips.shape
     strip_shape = StripShape(covered * shape * extent[0] * extent[1], covered * extent[::-1])
-    heavy, heavy_volume = submerged.elements, strip_shape.volume
+    added_mass_part, added_mass_volume = submerged.elements, strip_shape.volume
     if replaced is not None and conventions.wetting != "mean":
         rest = _wetted_at_rest(hull)
-        heavy = Wetted(*(wet + replaced * (at_rest - wet) for wet, at_rest in zip(heavy, rest.elements, strict=True)))
+        added_mass_part = Wetted(
+            *(wet + replaced * (at_rest - wet) for wet, at_rest in zip(added_mass_part, rest.elements, strict=True))
+        )
         at_rest = rest.covered * shape * rest.extent[0] * rest.extent[1]
-        heavy_volume = heavy_volume + replaced * (at_rest - heavy_volume)
+        added_mass_volume = added_mass_volume + replaced * (at_rest - added_mass_volume)
+    slow = position if fast_displacement is None else position.at[:2].add(-fast_displacement)
     return Instant(
         time,
         position,
@@ -94,15 +96,15 @@ def instant(
         environment,
         hull,
         submerged.elements,
-        heavy,
-        heavy_volume,
+        added_mass_part,
+        added_mass_volume,
         strip_shape,
         EndShape.of(hull, submerged.elements, covered, extent),
         strip_flow,
         end_flow,
         lines,
         sea.drift(time),
-        None if replaced is None else sea.excitation(time, excited),
+        None if replaced is None else sea.excitation(time, _origin(slow, matrix, conventions)[0]),
         _lid(flow, matrix, hull),
     )
 

@@ -267,7 +267,9 @@ class Model(eqx.Module):
             cylinders=self.cylinders,
             current=self.current,
             replaced=optional_sum([load.replaces() for load in self.loads]),
-            fast=optional_sum([load.fast_displacement(of) for load, of in zip(self.loads, state.memory, strict=True)]),
+            fast_displacement=optional_sum(
+                [load.fast_displacement(of) for load, of in zip(self.loads, state.memory, strict=True)]
+            ),
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> LoadSum:

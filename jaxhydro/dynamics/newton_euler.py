@@ -54,12 +54,12 @@ def sum_of_loads(loads: Sequence[AbstractLoad], now: Instant, memory: tuple[Any,
     per_volume, end_mass = total("element_mass", jnp.zeros((2, len(hull.elements.length)))), total("end_mass", on_ends)
     if (replaced := optional_sum([load.replaces_added_mass() for load in loads])) is not None:
         per_volume, end_mass = (1 - replaced) * per_volume, (1 - replaced) * end_mass
-    line_mass = hull.join(now.over_strips(per_volume) * now.heavy_volume, end_mass)
+    line_mass = hull.join(now.over_strips(per_volume) * now.added_mass_volume, end_mass)
     on_lines = hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward
     return LoadSum(
         force + hull.wrench(on_lines, now.lines.away),
         total("added_mass", jnp.zeros((6, 6))),
-        hull.masses(per_volume, end_mass, now.heavy),
+        hull.masses(per_volume, end_mass, now.added_mass_part),
         hull.moments,
         tuple(action.memory_rate for action in actions),
     )

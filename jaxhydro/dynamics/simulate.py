@@ -161,8 +161,6 @@ def simulate(
     rest = equilibrium(model) if named else jnp.zeros(6)
     q, velocity = _initial_state(rest, by_name(position), by_name(rate))
     start = State(q, velocity, memory)
-    if isinstance(sea, IrregularSea) and not sea.long_crested:
-        model, sea = model.in_sea(state_of(sea.components)), summed_directly(model, sea)
     if isinstance(sea, IrregularSea):
         here = model.in_sea(state_of(sea.components))
         return simulate_irregular(here, sea, start, times, step, method, adjoint, precision=precision).response
@@ -255,7 +253,7 @@ def simulate_irregular(
         duration = float(times[-1] - times[0])
         steps = max(adams_bashforth.START_STEPS, math.ceil(duration / limit - 1e-9))
         met = summed_directly(model, sea)
-        found, grid = _simulate(model, met, start, times, jnp.asarray(duration / steps), steps, method, adjoint)
+        found, grid = _simulate(model, met, start, times, jnp.asarray(duration / steps), steps, method, adjoint, precision)
         return IrregularSimulation(found, grid, met, duration / steps, steps)
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     points, own = model.hull.extremities(), excursion_of(model)

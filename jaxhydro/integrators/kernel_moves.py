@@ -22,11 +22,11 @@ def sources(equation: core.JaxprEqn) -> tuple[int, ...]:
 
 
 def moved(equation: core.JaxprEqn, addresses: Sequence[np.ndarray], others: Sequence[np.ndarray] = ()) -> list[np.ndarray]:
-    """Addresses of the results.
+    """Places, in the workspace, of the numbers that each result has.
 
     Args:
         equation: The operation.
-        addresses: Addresses of what is moved.
+        addresses: Places, in the workspace, of the numbers that each operand has.
         others: Indices.
     """
     name, how, first = equation.primitive.name, equation.params, addresses[0]

@@ -4,24 +4,21 @@ from collections.abc import Sequence
 from os import PathLike
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Complex, Float
 
 from jaxhydro.environment import STANDARD_GRAVITY
 from jaxhydro.errors import shown
 from jaxhydro.interop.capytaine_radiation import PAIR, Dataset, along_omega, computed, motions, open_capytaine, single
-from jaxhydro.interop.computed_water import water_notes
+from jaxhydro.interop.computed_water import water_notes, wave_phase
 from jaxhydro.interop.wamit_hydrostatics import FileHydrostatics
 from jaxhydro.interop.wamit_tables import distinct, same_heading
-from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.excitation import DirectionalExcitation, Excitation
 
 WHOLE = "excitation_force"
 PARTS = ("Froude_Krylov_force", "diffraction_force")
 REAL, IMAGINARY = "re", "im"  # along the dimension `complex` of files, which NetCDF has no numbers for
 VOLUME = ("disp_volume", "displaced_volume")
-INFINITE_DEPTH = 1e5  # m, where the dataset's depth is infinite
 
 
 def read_capytaine_excitation(
@@ -120,20 +117,13 @@ def _forces(
         raise one.wrong("omega", "two finite frequencies above 0 or more, each once", shown(omega[kept].tolist()))
     one.notes.extend(water_notes(one.source, (one.number("g"), _depth(one)), gravity, depth, float(omega[kept][0])))
     scale = one.scale(density)
+    water = (one.number("water_depth") or np.inf, one.number("g") or STANDARD_GRAVITY)
+    # from waves at the dataset's origin to those at the reference point, which is `one.origin` from it
     forces = [
-        scale * one.shift.T @ np.conj(table[inner][kept]).T * _phase(one, omega[kept], heading)
+        scale * one.shift.T @ np.conj(table[inner][kept]).T * wave_phase(omega[kept], -one.origin, heading, *water)
         for heading, table in zip(wanted, tables)
     ]
     return omega[kept], forces, one
-
-
-def _phase(one: Dataset, omega: Float[np.ndarray, " w"], heading: float) -> Complex[np.ndarray, " w"]:
-    """exp(i k r): from waves at the dataset's origin to those at a reference point r from it."""
-    if not one.origin.any():
-        return np.ones(len(omega), complex)
-    gravity, depth = one.number("g") or STANDARD_GRAVITY, one.number("water_depth") or INFINITE_DEPTH
-    k = np.asarray(wavenumber(jnp.asarray(omega), depth, gravity))
-    return np.exp(1j * k * (one.origin @ [np.cos(np.radians(heading)), np.sin(np.radians(heading))]))
 
 
 def _depth(one: Dataset) -> float | None:

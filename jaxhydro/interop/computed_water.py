@@ -1,11 +1,34 @@
-"""Notes on water that another program's results were computed for and that is not the platform's."""
+"""Water that another program's results were computed for: phases of its waves, and where it is not the platform's."""
 
+import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Complex, Float
+
+from jaxhydro.waves.dispersion import wavenumber
 
 MAX_DENSITY_MISMATCH = 1e-3  # of the density, without a note
 MAX_GRAVITY_MISMATCH = 0.005  # of the gravity, without a note
 MAX_DEPTH_MISMATCH = 0.02  # of the depth, without a note
+INFINITE_DEPTH = 1e5  # m, in place of an infinite depth
 DEEP_WATER_KH = np.pi  # k h from which on the bed does not matter
+
+
+def wave_phase(
+    omega: Float[np.ndarray, " w"], point: Float[np.ndarray, "2"], heading: float, depth: float, gravity: float
+) -> Complex[np.ndarray, " w"]:
+    """exp(-i k r): waves Re A exp(i (omega t - k x)) at a point r over those at the origin.
+
+    Args:
+        omega: Frequencies (rad/s).
+        point: The point (m).
+        heading: Where the waves run to (deg).
+        depth: Depth of the water (m), infinite where it is deep.
+        gravity: Acceleration (m/s²).
+    """
+    if not point.any():
+        return np.ones(len(omega), complex)
+    k = np.asarray(wavenumber(jnp.asarray(omega), min(depth, INFINITE_DEPTH), gravity))
+    return np.exp(-1j * k * (point @ [np.cos(np.radians(heading)), np.sin(np.radians(heading))]))
 
 
 def density_scale(source: str, own: float | None, density: float | None, notes: list[str]) -> float:

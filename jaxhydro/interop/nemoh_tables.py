@@ -9,22 +9,19 @@ from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Complex, Float
 
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem, shown
-from jaxhydro.interop.computed_water import density_scale, water_notes
-from jaxhydro.interop.nemoh_case import NemohCase, case_of
+from jaxhydro.interop.computed_water import density_scale, water_notes, wave_phase
+from jaxhydro.interop.nemoh_case import case_of
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 from jaxhydro.interop.wamit_tables import distinct, same_heading, to_omega
-from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.excitation import DirectionalExcitation, Excitation
 
 MIN_FREQUENCIES = 4  # of radiation
 UNITS = {"rad/s": "rad/s", "Hz": "Hz", "s": "period"}  # of the first column, as `to_omega` has them
-INFINITE_DEPTH = 1e5  # m, where Nemoh's depth is infinite
 _UNIT = re.compile(r"VARIABLES\s*=\s*\"[^(\"]*\(([^)]*)\)", re.IGNORECASE)
 _COLUMN = re.compile(r"\"(A|abs\(F)\s*(\d+)\s+(\d+)\)?\"")
 _MOTION = re.compile(r"Motion of body\s*(\d+)\s*in DoF\s*(\d+)", re.IGNORECASE)
@@ -170,18 +167,10 @@ def _forces(
             there = ", ".join(f"{beta:g}" for beta, _ in known)
             raise _wrong(path, f"waves of heading {heading:g} deg", f"{there} deg", "beta")
         force = rows[:, columns] * np.exp(-1j * rows[:, [c + 1 for c in columns]])  # the conjugate
-        forces.append(scale * case.shift.T @ force.T * _phase(case, omega, heading))
+        forces.append(scale * case.shift.T @ force.T * wave_phase(omega, case.wave_origin, heading, case.depth, case.gravity))
     if notes is not None:
         notes += said
     return omega, forces
-
-
-def _phase(case: NemohCase, omega: Float[np.ndarray, " w"], heading: float) -> Complex[np.ndarray, " w"]:
-    """exp(-i k r): from waves with phase 0 at Nemoh's point r to those at the reference point."""
-    if not case.wave_origin.any():
-        return np.ones(len(omega), complex)
-    k = np.asarray(wavenumber(jnp.asarray(omega), min(case.depth, INFINITE_DEPTH), case.gravity))
-    return np.exp(-1j * k * (case.wave_origin @ [np.cos(np.radians(heading)), np.sin(np.radians(heading))]))
 
 
 def _by_heading(path: str | PathLike[str], file: _File) -> list[tuple[float, _Zone]]:

@@ -32,9 +32,9 @@ class ComputedExcitation(AbstractLoad):
 
     s is a share: 1 for the program's own excitation, with drag alone left to the strips, as OpenFAST HydroDyn has a
     potential-flow body; 0 for that of the strips. What the program leaves out the strips then leave out with it: wetting,
-    stretching and bound waves act by drag only. Added mass stays that of the members, with share s of it on the part that is
-    wet at rest: what its wetting does in waves is in the quadratic transfer function. Of waves that are sent back
-    (`WaveReflection`) the strips alone know. An irregular sea has to be prepared with `Model.excitation`.
+    stretching and bound waves act by drag only. Added mass stays that of the members, unless `ComputedAddedMass` has it. A
+    share s of it is that of the hull wet at rest: what wetting by waves does is in the quadratic transfer function. Of waves
+    that are sent back (`WaveReflection`) the strips alone know. An irregular sea has to be prepared with `Model.excitation`.
 
     `corner` is c (rad/s).
     """

@@ -25,9 +25,9 @@ class ComputedRadiation(AbstractLoad):
         dr/dt = A r + B v,  F = -s C r.
 
     It gives damping B(omega), and added mass A(omega) - A(infinity) = -1/omega int_0^inf K sin(omega t) dt (Ogilvie 1964).
-    Added mass at infinite frequency is not here but stays the strips' own: with this load a `Ca` means that one, and what
-    was tuned to slow motion counts part of it twice. Linear: memory of the mean wetted hull, moving with the body. Before t
-    = 0 the platform was at rest.
+    Added mass at infinite frequency is not here: it stays the strips' own, or is that of `ComputedAddedMass`. With this load
+    a `Ca` means that one, and what was tuned to slow motion counts part of it twice. Linear: memory of the mean wetted hull,
+    moving with the body. Before t = 0 the platform was at rest.
 
     Its label is `computed_radiation.share`. A, B and C are constants: another hull has others. `highest` (rad/s) is the last
     frequency that the coefficients were computed at.

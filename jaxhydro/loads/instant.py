@@ -23,9 +23,9 @@ class Instant(eqx.Module):
         environment: Water and gravity.
         hull: The hull.
         wetted: Submerged part of each load element.
-        heavy: Part of each load element that has added mass: the submerged one; where computed wave forces replace those of
-            strips, the one that is wet at rest.
-        heavy_volume: Volume (m³) of that part by strip, (n,).
+        added_mass_part: Part of each load element that has added mass: the submerged one; where computed wave forces replace
+            those of strips, the one that is wet at rest.
+        added_mass_volume: Volume (m³) of that part by strip, (n,).
         strip_shape: Submerged part of each strip.
         end_shape: Areas of ends and faces.
         strip_flow: Flow past each strip.
@@ -43,8 +43,8 @@ class Instant(eqx.Module):
     environment: Environment
     hull: Hull
     wetted: Wetted
-    heavy: Wetted
-    heavy_volume: Float[Array, " n"]
+    added_mass_part: Wetted
+    added_mass_volume: Float[Array, " n"]
     strip_shape: StripShape
     end_shape: EndShape
     strip_flow: StripFlow

@@ -11,7 +11,7 @@ from jaxtyping import Array, Complex, Float
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import Parameter, parameters
-from jaxhydro.rotations import cross
+from jaxhydro.rotations import cross, skew
 
 HALF_GAUSS = 0.5 / np.sqrt(3.0)  # of a rod's length: distance of its two Gauss points from its middle
 
@@ -94,7 +94,7 @@ class LiquidColumnDampers(AbstractLoad):
             pushed = width * gravity @ along + 2 * rise * gravity @ up - 0.5 * self.head_loss[name] * jnp.abs(rising) * rising
             rates.append(jnp.stack([rising, pushed]))
             places, lengths = self.particles(i)
-            arms = jnp.concatenate([jnp.tile(jnp.eye(3), (6, 1, 1)), jnp.stack([crossing(place) for place in places])], axis=1)
+            arms = jnp.concatenate([jnp.tile(jnp.eye(3), (6, 1, 1)), jnp.stack([skew(place) for place in places])], axis=1)
             still = line * jnp.einsum("q,qij,qkj->ik", lengths, arms, arms)
             own = still - line / length * flow[:, None] * flow
             carried = still @ now.velocity + line * flow * rising  # momentum of the liquid
@@ -105,10 +105,3 @@ class LiquidColumnDampers(AbstractLoad):
             inertia = inertia + own
             force = force + own[:, :3] @ cross(spin, velocity) - line / length * flow * pushed - turning + weight + lean
         return Action(body_force=force, added_mass=inertia, memory_rate=jnp.stack(rates, axis=1))
-
-
-def crossing(place: Float[Array, "3"]) -> Float[Array, "3 3"]:
-    """Matrix whose product with a force is its moment at a place."""
-    x, y, z = place
-    zero = jnp.zeros(())
-    return jnp.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]])

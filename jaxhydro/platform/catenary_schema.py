@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterator
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Field
 
-from jaxhydro.errors import Consistent, NonNegative, Number, Positive, Problem, Schema, Text, Vector, shown, suggest
+from jaxhydro.errors import Consistent, NonNegative, Positive, Problem, Schema, Text, shown, suggest
+from jaxhydro.platform.anchored_line import AnchoredLine
 
 MAX_STRAIN = 0.25  # of a line in the reference position: twice that at which polyester ropes break
 ON_SEABED = 1e-4  # of the water depth: how far from the seabed an anchor is on it
@@ -52,30 +52,14 @@ class Segment(Schema):
     length: Positive
 
 
-class CatenaryLine(Schema):
+class CatenaryLine(AnchoredLine):
     """Line from anchor to fairlead (m), its segments in this order, copied to each `heading` (deg) about the z axis."""
 
-    anchor: Vector
-    fairlead: Vector
     segments: Annotated[tuple[Segment, ...], Field(min_length=1)]
-    heading: Annotated[tuple[Number, ...], Field(min_length=1)] = (0.0,)
 
     def length(self) -> float:
         """Unstretched length (m)."""
         return sum(segment.length for segment in self.segments)
-
-    def distance(self) -> float:
-        """Distance (m) from anchor to fairlead in the reference position."""
-        return float(np.linalg.norm(np.subtract(self.anchor, self.fairlead)))
-
-    def copies(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Anchor and fairlead (m) at each heading."""
-        found = []
-        for heading in self.heading:
-            c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
-            turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-            found.append((turn @ np.array(self.anchor), turn @ np.array(self.fairlead)))
-        return found
 
 
 class Seabed(Schema):

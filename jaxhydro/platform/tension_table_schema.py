@@ -1,14 +1,14 @@
 """Schema of ropes whose tension is a table over stretch or strain, in SI, headings in degrees."""
 
 import itertools
-import math
 from collections.abc import Iterator
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from jaxhydro.errors import Consistent, NonNegative, Number, Positive, Problem, Text, Vector, shown, suggest
+from jaxhydro.errors import Consistent, NonNegative, Positive, Problem, Text, shown, suggest
+from jaxhydro.platform.anchored_line import AnchoredLine
 
 Column = Annotated[tuple[NonNegative, ...], Field(min_length=2)]
 
@@ -50,31 +50,15 @@ class Rope(Consistent):
         return np.array(self.strain if self.strain is not None else self.stretch, float)
 
 
-class RopeLine(Consistent):
+class RopeLine(AnchoredLine, Consistent):
     """Straight line of a rope from anchor to fairlead (m), copied to each `heading` (deg) about the z axis."""
 
     rope: Text
-    anchor: Vector
-    fairlead: Vector
     unstretched_length: Positive
-    heading: Annotated[tuple[Number, ...], Field(min_length=1)] = (0.0,)
 
     def _faults(self) -> Iterator[Problem]:
         if self.anchor == self.fairlead:
             yield Problem("fairlead", "a point that is not the anchor", shown(self.fairlead))
-
-    def copies(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Anchor and fairlead (m) at each heading."""
-        found = []
-        for heading in self.heading:
-            c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
-            turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-            found.append((turn @ np.array(self.anchor), turn @ np.array(self.fairlead)))
-        return found
-
-    def distance(self) -> float:
-        """Distance (m) from anchor to fairlead at the reference position."""
-        return float(np.linalg.norm(np.subtract(self.anchor, self.fairlead)))
 
 
 class TensionTableMooring(Consistent):

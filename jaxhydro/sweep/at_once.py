@@ -9,10 +9,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Complex, Float
 
-from jaxhydro.dynamics.integrate import Kernel, Precision, clock, integrate
+from jaxhydro.dynamics.integrate import Kernel, clock, integrate
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.simulate import excursion_of, farthest, steps_in
 from jaxhydro.dynamics.statics import EquilibriumError, equilibrium
+from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.preparation import Preparation
 from jaxhydro.waves.sea_state import state_of

@@ -8,10 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from jaxhydro.errors import InputError, Problem, read_yaml, shown, suggest, validate
+from jaxhydro.errors import MAX_SPREADING, InputError, Problem, read_yaml, shown, suggest, validate
 from jaxhydro.sweep.sea_states import UNITS as UNITS_OF_STATES
 from jaxhydro.sweep.sea_states import swell_problems
-from jaxhydro.sweep.sweep_schema import COLUMNS, MAX_SPREADING, SeaState, Sweep
+from jaxhydro.sweep.sweep_schema import COLUMNS, SeaState, Sweep
 
 UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # of "Unicode text" of spreadsheets
 UNITS = {"heading": "deg", **UNITS_OF_STATES}  # that a header may state; probability may be in any

@@ -8,16 +8,25 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, usual_transient
 from jaxhydro.environment import DOFS
-from jaxhydro.errors import Consistent, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
+from jaxhydro.errors import (
+    Consistent,
+    Faults,
+    Flag,
+    Gamma,
+    NonNegative,
+    Number,
+    Positive,
+    Problem,
+    Schema,
+    Seed,
+    Spreading,
+    Text,
+)
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.sweep.sea_states import OF_SWELL, swell_problems, table_problems
 from jaxhydro.waves.sea import Stretching
 
-Gamma = Annotated[float, Field(strict=True, ge=1, le=7)]
-Seed = Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)]
 Exponent = Annotated[float, Field(strict=True, ge=1, le=20)]
-MAX_SPREADING = 1e4  # exponent s, as in `jaxhydro simulate`
-Spreading = Annotated[float, Field(strict=True, ge=0, le=MAX_SPREADING)]
 Dof: TypeAlias = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 MAX_SAMPLES = 5_000_000  # samples of a run
 COLUMNS = ("hs", "tp", "probability", "gamma", "heading", "spreading", *OF_SWELL)  # of a scatter table

@@ -139,7 +139,7 @@ def test_the_slow_displacement_is_that_behind_a_butterworth_filter(period: float
 
 
 def test_added_mass_does_not_follow_the_wetting() -> None:
-    """Beside a computed force: that of the part that is wet at rest, in a crest and at a heave; without it, of what is wet."""
+    """With a computed force, added mass is that of the hull wet at rest. Without one it follows waves and heave."""
     sea, heaved = irregular().direct(), np.array([0.0, 0, -2.0, 0, 0, 0])
     load = ComputedExcitation(Excitation.of(GRID, forces()), 1.0)
     rest, wet = (build(COLUMN, PONTOON, wetting=wetting) for wetting in ("mean", "instantaneous"))

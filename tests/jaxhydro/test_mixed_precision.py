@@ -1,5 +1,7 @@
 """Loads in float32 within a time integration in float64."""
 
+import dataclasses
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -48,6 +50,19 @@ def test_statistics_of_a_sea_hardly_change():
         for name, statistic in STATISTICS.items():
             assert abs(statistic(mixed[:, i]) - statistic(double[:, i])) < 1e-4 * deviation, (i, name)
         assert 0 < np.abs(mixed[:, i] - double[:, i]).max() < 1e-4 * deviation
+
+
+def test_a_sea_of_several_headings_has_the_precision_too():
+    model = jh.load_model("volturnus-s-focal")
+    waves = jh.spectrum_components(
+        lambda omega: jh.jonswap(omega, 3.0, 9.0), 60.0, model.environment, low=0.08, cutoff=0.14, seed=1
+    )
+    sea = jh.IrregularSea(dataclasses.replace(waves, heading=jnp.linspace(-0.2, 0.2, waves.omega.size)), model.environment)
+    double, mixed = (
+        np.asarray(jh.simulate(model, np.arange(0.0, 20.0), sea, precision=precision).position)
+        for precision in ("double", "mixed")
+    )
+    assert 0 < np.abs(mixed - double).max() < 1e-4 * double[:, 2].std()
 
 
 def test_a_sweep_states_its_precision(tmp_path):
