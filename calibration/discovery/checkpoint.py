@@ -18,7 +18,7 @@ from calibration.campaign.manifest import platform_source
 from calibration.discovery.diagnosis import Rejected, Score
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.fit_state import FitState, ResidualSummary
-from calibration.discovery.search import AcceptedEffect
+from calibration.discovery.search import AcceptedEffect, ListedVariant
 from jaxhydro import fingerprint as fingerprints
 from jaxhydro.files import staged
 
@@ -40,6 +40,7 @@ class Checkpoint:
         scores: Scores of candidates.
         rejected: Rejected effects by name.
         notes: Notes of the search.
+        shortlist: Candidates that later rounds are about.
         alone: Residual of a fit to decays alone, or None.
         begun: Parameter coordinates where the search began (p,).
         seconds: Computing time (s).
@@ -51,6 +52,7 @@ class Checkpoint:
     scores: tuple[Score, ...]
     rejected: dict[str, Rejected]
     notes: tuple[str, ...]
+    shortlist: tuple[ListedVariant, ...]
     alone: ResidualSummary | None
     begun: np.ndarray
     seconds: float
@@ -81,6 +83,7 @@ def save_checkpoint(path: Path, search: "Search", states: list[FitState], second
         tuple(search.scores),
         search.rejected,
         tuple(search.notes),
+        tuple(search.shortlist),
         search.alone,
         np.asarray(search.begun),
         seconds,
@@ -127,7 +130,8 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
         return []
     search.study = replace(search.study, expected=reached.expected)
     search.found, search.scores, search.rejected = reached.found, list(reached.scores), reached.rejected
-    search.notes, search.alone, search.earlier = list(reached.notes), reached.alone, reached.seconds
+    search.notes, search.shortlist = list(reached.notes), list(reached.shortlist)
+    search.alone, search.earlier = reached.alone, reached.seconds
     search.anchor(reached.begun)
     return list(reached.states)
 

@@ -33,7 +33,6 @@ MIN_EXCURSION = 1.7  # lengths of the shortest wave, over which a sea is prepare
 MAX_OFFSET_SHARE = 0.02  # of a decay's standard deviation: offset of a sensor's zero, beside noise
 TAPERED_SHARE = 0.1  # of a test in waves, both ends together
 MIN_FIRST_ORDER_SHARE = 0.01  # of a sea's variance: slower components are not first order
-DOMINANT_SHARE = 0.7  # of all steps in one run or the decays: then directions are differentiated in parallel
 MAX_FREQUENCY_RATIO = 6.0  # times the highest natural frequency, up to which motions are compared
 
 
@@ -55,7 +54,7 @@ def study_of(
         directions: The directions (d, p).
         campaign: The campaign.
         options: How seas are reconstructed.
-        width: Number of directions that are differentiated at a time; halved where little can run in parallel.
+        width: Number of directions that are differentiated at a time.
 
     Raises:
         InputError: If records cannot be used.
@@ -88,15 +87,12 @@ def study_of(
             cuts.append(rows)
             seas.append(sea)
             notes += [*run.notes, *made.notes]
-    steps = [sea.fitted for sea in seas] + ([] if decays is None else [int(np.sum(decays.data.count))])
-    if max(steps) > DOMINANT_SHARE * sum(steps):
-        width = -(-width // 2)
     return Study(
         space,
         model,
         tuple(names),
         directions,
-        width,
+        min(width, len(names)),
         decays,
         tuple(seas),
         tuple(series),

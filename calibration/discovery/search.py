@@ -40,6 +40,18 @@ class AcceptedEffect(NamedTuple):
     held_out: np.ndarray
 
 
+class ListedVariant(NamedTuple):
+    """A candidate at values of its shapes.
+
+    Attributes:
+        name: Name of the candidate.
+        values: Values of its shapes (SI).
+    """
+
+    name: str
+    values: dict[str, float]
+
+
 class Search(EffectFits):
     """Search for missing effects.
 
@@ -50,6 +62,7 @@ class Search(EffectFits):
         earlier: Computing time of earlier, stopped runs (s).
         alone: Residual of a calibration to decays alone, where there are seas too.
         found: Evidence of the accepted effects by name.
+        shortlist: Candidates that helped in the rounds along all candidates, or were in probable sets.
     """
 
     def __init__(self, campaign: Campaign, setup: StudySetup, say: ReportStage) -> None:
@@ -60,6 +73,7 @@ class Search(EffectFits):
         self.earlier = 0.0
         self.alone: ResidualSummary | None = None
         self.found: dict[str, AcceptedEffect] = {}
+        self.shortlist: list[ListedVariant] = []
 
     def fit_baseline(self) -> FitState:
         """Fit the declared model."""

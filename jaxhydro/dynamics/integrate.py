@@ -22,7 +22,6 @@ Adjoint = Literal["forward", "reverse"]
 Kernel = Literal["off", "gpu", "interpreted"]
 EXTRA_STEPS = 2  # steps, so that differences at the last one are central
 MOTION_SIZE = 12  # entries of the state before the loads' memories: position and velocity
-MAX_SEPARATE_STATE = 32  # entries of a state beyond which a forward derivative runs along with the simulation
 Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 
@@ -85,9 +84,8 @@ def _by_loop(
     loop = adams_bashforth if method == "ab4" else runge_kutta
     options: dict[str, Any] = {} if method == "ab4" else {"scheme": runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()}
     run: Any = loop.forward if adjoint == "forward" else loop.backward
-    if adjoint == "forward" and y.shape[0] > MAX_SEPARATE_STATE:
-        run, options["shown"] = loop.direct, MOTION_SIZE
-
+    if adjoint == "forward":
+        options["shown"] = MOTION_SIZE
     path = run((model, sea), y, start, step, count, rate=_rate_of(unravel, precision), capacity=capacity, **options)
     return path[:, :6], path[:, 6:MOTION_SIZE]
 
@@ -173,7 +171,7 @@ def integrate(
 def states(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""], step: Float[Array, ""], count: int) -> State:
     """States, memories included, after 0, 1 ... `count` steps of four-step Adams-Bashforth, stacked."""
     y, unravel = ravel_pytree(state)
-    path = adams_bashforth.direct(
+    path = adams_bashforth.forward(
         (model, sea), y, start, step, jnp.asarray(count), rate=_rate_of(unravel), capacity=count, shown=y.shape[0]
     )
     return jax.vmap(unravel)(path)

@@ -14,12 +14,19 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from jaxhydro.integrators.runge_kutta import RK4, Rate, linearised
+from jaxhydro.integrators.linearised_rate import Rate, linearised_rate
+from jaxhydro.integrators.runge_kutta import RK4
 
 CHECKPOINT_STEPS = 64  # steps per checkpointed block of a reverse gradient
 BATCH = 4  # evaluations linearised together: their flow fills the cache
 START_STEPS = 3  # steps by RK4, of four evaluations each
 STORED_SLOPES = 4 * START_STEPS + 1  # slopes that are remembered
+
+
+def _nonzero(table: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Columns and values of the entries of every row that are not zero, which are so many at most."""
+    columns = np.argsort(table == 0, axis=1, kind="stable")[:, :most]
+    return columns, np.take_along_axis(table, columns, axis=1)
 
 
 class _Rows:
@@ -45,6 +52,10 @@ class _Rows:
             for back, weight in enumerate((55 / 24, -59 / 24, 37 / 24, -9 / 24)):
                 taken = step - back
                 self.add[i, i - (4 * taken if taken < START_STEPS else 4 * START_STEPS + taken - START_STEPS)] = weight
+        # the same without zeros: how many evaluations ago, and coefficients
+        self.at_back, self.at_weight = _nonzero(self.at, 1)
+        self.at_back += 1
+        self.add_back, self.add_weight = _nonzero(self.add, 4)
 
 
 ROWS = _Rows()
@@ -112,11 +123,6 @@ def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool,
     return path, taken
 
 
-def direct(driver, y, start, step, count, *, rate: Rate, capacity: int, shown: int) -> Float[Array, "n _"]:
-    """Path without checkpoints, as `runge_kutta.direct`."""
-    return _march(driver, y, start, step, count, rate, capacity, False, shown)[0]
-
-
 @eqx.filter_custom_jvp
 def forward(
     driver: Any,
@@ -127,36 +133,47 @@ def forward(
     *,
     rate: Rate,
     capacity: int,
-) -> Float[Array, "n s"]:
-    """States after 0, 1 ... `count` steps of dy/dt = rate(driver, t, y), differentiable forward.
-
-    Has forward derivatives with respect to `driver` and `y`, not to times.
-    """
-    return _march(driver, y, start, step, count, rate, capacity, False)[0]
+    shown: int,
+) -> Float[Array, "n m"]:
+    """States after 0, 1 ... `count` steps, as `runge_kutta.forward`."""
+    return _march(driver, y, start, step, count, rate, capacity, False, shown)[0]
 
 
 @forward.def_jvp
-def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int):
-    """Tangents by linearisation at all evaluations, many at once, and the scheme applied to them."""
+def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int, shown: int):
+    """Tangents by linearisation at all evaluations, several at once, and the scheme applied to them."""
     driver, y, start, step, count = primals
     d_driver, d_y, *_ = tangents
-    path, taken = _march(driver, y, start, step, count, rate, capacity, True)
-    total = evaluations(capacity + 1)
-    index = jnp.arange(total)
-    at, add, time, _ = jax.vmap(_row)(index)
-    slope, push = linearised(rate, driver, d_driver, start + step * time, taken, evaluations(count + 1), BATCH)
+    path, taken = _march(driver, y, start, step, count, rate, capacity, True, shown)
+    at = linearised_rate(rate, driver, d_driver)
+    batches = -(-evaluations(capacity + 1) // BATCH)
+    taken = jnp.pad(taken, ((0, batches * BATCH - taken.shape[0]), (0, 0)))
 
-    def body(carry, now):
-        d_y, slopes = carry
-        matrix, vector, at, add = now
-        d_slope = matrix @ (d_y + step * (at @ slopes)) + vector
-        return _advance(d_y, slopes, d_slope, add, step), d_y
+    def advance(carry, now):
+        index, slope, push = now
+        d_y, slopes, found = carry
+        row = jnp.minimum(index, len(ROWS.time) - 1)
+        found = jax.lax.dynamic_update_index_in_dim(found, d_y[:shown], _row(index)[3] + index - row, 0)
+
+        def back(evaluations):
+            return jax.lax.dynamic_index_in_dim(slopes, (index - evaluations) % STORED_SLOPES, 0, keepdims=False)
+
+        (last,), (weight,) = jnp.array(ROWS.at_back)[row], jnp.array(ROWS.at_weight)[row]
+        new = slope @ (d_y + step * weight * back(last)) + push
+        slopes = jax.lax.dynamic_update_index_in_dim(slopes, new, index % STORED_SLOPES, 0)
+        some, weights = jnp.array(ROWS.add_back)[row], jnp.array(ROWS.add_weight)[row]
+        return (d_y + step * sum(weights[k] * back(some[k]) for k in range(len(some))), slopes, found), None
+
+    def batch(block, carry):
+        index = block * BATCH + jnp.arange(BATCH)
+        _, _, time, _ = jax.vmap(_row)(index)
+        states = jax.lax.dynamic_slice_in_dim(taken, block * BATCH, BATCH)
+        return jax.lax.scan(advance, carry, (index, *jax.vmap(at)(start + step * time, states)))[0]
 
     d_y = jnp.zeros_like(y) if d_y is None else d_y
-    _, found = jax.lax.scan(body, (d_y, jnp.zeros((STORED_SLOPES, y.shape[0]))), (slope, push, at, add))
-    # the state before the first evaluation of every step
-    first = np.concatenate([4 * np.arange(START_STEPS), np.arange(4 * START_STEPS, total)])
-    return path, found[first]
+    carry = d_y, jnp.zeros((STORED_SLOPES, *y.shape)), jnp.zeros((capacity + 1 + BATCH, shown))
+    _, _, found = jax.lax.fori_loop(0, (evaluations(count + 1) + BATCH - 1) // BATCH, batch, carry)
+    return path, found[: capacity + 1]
 
 
 def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Float[Array, "n s"]:

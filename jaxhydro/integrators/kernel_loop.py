@@ -19,7 +19,7 @@ from jaxhydro.integrators.adams_bashforth import START_STEPS, STORED_SLOPES
 from jaxhydro.integrators.kernel_plan import Plan, Value
 from jaxhydro.integrators.kernel_tiles import Tables, Writer, padded
 from jaxhydro.integrators.kernel_trace import plan
-from jaxhydro.integrators.runge_kutta import Rate
+from jaxhydro.integrators.linearised_rate import Rate
 
 MANY = 1 << 28  # numbers in tables, at most
 WARPS = 4  # of 32 threads per simulation

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jax.extend import core
 
 from jaxhydro.integrators.equations import apply, type_of, walk
-from jaxhydro.integrators.runge_kutta import Rate
+from jaxhydro.integrators.linearised_rate import Rate
 
 Precision = Literal["double", "mixed"]
 APART = frozenset({"optimization_barrier"})  # operations whose operands have nothing to do with each other

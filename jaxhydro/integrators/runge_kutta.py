@@ -5,7 +5,6 @@ with free initial states: one compilation, from the persistent cache too, and Ja
 """
 
 import functools
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -14,10 +13,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-CHECKPOINT_STEPS = 64  # steps per checkpointed block of a reverse gradient
-BATCH = 32  # stages linearised together: fills the vector units and stays in the cache
+from jaxhydro.integrators.linearised_rate import Rate, linearised_rate
 
-Rate = Callable[[Any, Float[Array, ""], Float[Array, " s"]], tuple[Float[Array, " _"], ...]]  # part by part
+CHECKPOINT_STEPS = 64  # steps per checkpointed block of a reverse gradient
+BATCH = 4  # steps linearised together: their stages fill the vector units and stay in the cache
 
 
 class Scheme(NamedTuple):
@@ -81,13 +80,6 @@ def _march(driver, y, start, step, count, rate: Rate, scheme: Scheme, capacity: 
     return path, stages
 
 
-def direct(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capacity: int, shown: int) -> Float[Array, "n _"]:
-    """The first `shown` entries of the path that `forward` gives; tangents run along with the simulation.
-
-    For long states (loads with memory), whose linearisations, a matrix for every evaluation, would be too large."""
-    return _march(driver, y, start, step, count, rate, scheme, capacity, False, shown)[0]
-
-
 @eqx.filter_custom_jvp
 def forward(
     driver: Any,
@@ -99,78 +91,67 @@ def forward(
     rate: Rate,
     scheme: Scheme,
     capacity: int,
-) -> Float[Array, "n s"]:
+    shown: int,
+) -> Float[Array, "n m"]:
     """States after 0, 1 ... `count` steps of dy/dt = rate(driver, t, y), in an array for `capacity` steps.
 
     Has forward derivatives with respect to `driver` and `y`, not to times.
+
+    Args:
+        driver: First argument of `rate`.
+        y: Initial state.
+        start: First time (s).
+        step: Time step (s).
+        count: Number of steps that are taken.
+        rate: Right-hand side.
+        scheme: Butcher tableau.
+        capacity: Largest number of steps.
+        shown: Number of entries of the state that are returned.
     """
-    return _march(driver, y, start, step, count, rate, scheme, capacity, False)[0]
+    return _march(driver, y, start, step, count, rate, scheme, capacity, False, shown)[0]
 
 
 @forward.def_jvp
-def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int):
-    """Tangents of a whole simulation from linearisations at every stage, many at once.
+def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int, shown: int):
+    """Tangents of a whole simulation from linearisations at every stage, several steps at once.
 
     Once the path is known its linearisations do not depend on each other; what is left in sequence is one product of a
     small matrix per step. The state's part is common to all parameters, so that initial states cost nothing more.
     """
     driver, y, start, step, count = primals
     d_driver, d_y, *_ = tangents
-    path, stages = _march(driver, y, start, step, count, rate, scheme, capacity, True)
+    path, stages = _march(driver, y, start, step, count, rate, scheme, capacity, True, shown)
     assert stages is not None
-    nodes, size = jnp.array(scheme.nodes), len(scheme.nodes)
-    times = (start + step * (jnp.arange(capacity + 1.0)[:, None] + nodes)).reshape(-1)
-    states = stages.reshape(times.shape[0], -1)
-    slope, push = linearised(rate, driver, d_driver, times, states, size * (count + 1), BATCH)
-    slope, push = (x.reshape(capacity + 1, size, *x.shape[1:]) for x in (slope, push))
+    nodes, size, states = jnp.array(scheme.nodes), len(scheme.nodes), y.shape[0]
+    at = linearised_rate(rate, driver, d_driver)
+    batches = -(-(capacity + 1) // BATCH)
+    stages = jnp.pad(stages, ((0, batches * BATCH - capacity - 1), (0, 0), (0, 0)))
     # the scheme applied to the linearised equation: d_y after a step = transfer d_y + drive
-    eye, table = jnp.eye(y.shape[0]), scheme.coefficients()
-    matrices: list[Array] = []
-    vectors: list[Array] = []
-    for i in range(size):
-        matrix = eye + step * sum((table[i, j] * matrices[j] for j in range(i)), jnp.zeros_like(slope[:, 0]))
-        vector = step * sum((table[i, j] * vectors[j] for j in range(i)), jnp.zeros_like(push[:, 0]))
-        matrices.append(slope[:, i] @ matrix)
-        vectors.append(push[:, i] + jnp.einsum("nij,nj->ni", slope[:, i], vector))
-    transfer = eye + step * sum(b * m for b, m in zip(scheme.weights, matrices, strict=True))
-    drive = step * sum(b * v for b, v in zip(scheme.weights, vectors, strict=True))
+    eye, table = jnp.eye(states), scheme.coefficients()
+
+    def batch(index, carry):
+        here = index * BATCH + jnp.arange(BATCH)
+        times = start + step * (here[:, None] + nodes)
+        some = jax.lax.dynamic_slice_in_dim(stages, index * BATCH, BATCH)
+        slope, push = jax.vmap(at)(times.reshape(-1), some.reshape(-1, states))
+        slope, push = (x.reshape(BATCH, size, *x.shape[1:]) for x in (slope, push))
+        matrices: list[Array] = []
+        vectors: list[Array] = []
+        for i in range(size):
+            matrix = eye + step * sum((table[i, j] * matrices[j] for j in range(i)), jnp.zeros_like(slope[:, 0]))
+            vector = step * sum((table[i, j] * vectors[j] for j in range(i)), jnp.zeros_like(push[:, 0]))
+            matrices.append(slope[:, i] @ matrix)
+            vectors.append(push[:, i] + jnp.einsum("nij,nj->ni", slope[:, i], vector))
+        transfer = eye + step * sum(b * m for b, m in zip(scheme.weights, matrices, strict=True))
+        drive = step * sum(b * v for b, v in zip(scheme.weights, vectors, strict=True))
+        d_y, found = carry
+        d_y, taken = jax.lax.scan(lambda d, now: (now[0] @ d + now[1], d[:shown]), d_y, (transfer, drive))
+        return d_y, jax.lax.dynamic_update_slice_in_dim(found, taken, index * BATCH, 0)
+
     d_y = jnp.zeros_like(y) if d_y is None else d_y
-    _, d_path = jax.lax.scan(lambda d, now: (now[0] @ d + now[1], d), d_y, (transfer, drive))
-    return path, d_path
-
-
-def linearised(
-    rate: Rate,
-    driver: Any,
-    d_driver: Any,
-    times: Float[Array, " n"],
-    states: Float[Array, "n s"],
-    count: Int[Array, ""],
-    batch: int,
-) -> tuple[Float[Array, "n s s"], Float[Array, "n s"]]:
-    """Derivatives of the rate by the state, and along `d_driver`, at the first `count` of some times and states (zero beyond,
-    but for the last batch's rest)."""
-    total, size = states.shape
-    points = -(-total // batch) * batch
-    parts = len(jax.eval_shape(rate, driver, times[0], states[0]))
-    times, states = jnp.pad(times, (0, points - total)), jnp.pad(states, ((0, points - total), (0, 0)))
-    moving = bool(jax.tree.leaves(d_driver))
-
-    def at(time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Float[Array, "s s"], Float[Array, " s"]]:
-        slope = jnp.concatenate([jax.jacrev(lambda y, i=i: rate(driver, time, y)[i])(state) for i in range(parts)])
-        if not moving:
-            return slope, jnp.zeros(size)
-        return slope, eqx.filter_jvp(lambda d: jnp.concatenate(rate(d, time, state)), (driver,), (d_driver,))[1]
-
-    def block(index, out):
-        here = index * batch
-        part = (jax.lax.dynamic_slice_in_dim(times, here, batch), jax.lax.dynamic_slice_in_dim(states, here, batch))
-        found = jax.vmap(at)(*part)
-        return tuple(jax.lax.dynamic_update_slice_in_dim(o, f, here, 0) for o, f in zip(out, found, strict=True))
-
-    out = (jnp.zeros((points, size, size)), jnp.zeros((points, size)))
-    slope, push = jax.lax.fori_loop(0, (count + batch - 1) // batch, block, out)
-    return slope[:total], push[:total]
+    found = jnp.zeros((batches * BATCH, shown))
+    _, found = jax.lax.fori_loop(0, (count + BATCH) // BATCH, batch, (d_y, found))
+    return path, found[: capacity + 1]
 
 
 def backward(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capacity: int) -> Float[Array, "n s"]:

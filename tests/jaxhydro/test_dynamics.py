@@ -109,7 +109,7 @@ def test_order_of_convergence(method: str, order: int, steps: tuple[int, ...]) -
 def test_order_of_the_schemes_themselves(method: str, order: int, steps: tuple[int, ...]) -> None:
     """y' = y cos t, y(0) = 1: exactly exp(sin t), with time in the right-hand side."""
     scheme, errors = runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5(), []
-    options = {"rate": lambda _, t, y: (y * jnp.cos(t),), "scheme": scheme, "capacity": 320}
+    options = {"rate": lambda _, t, y: (y * jnp.cos(t),), "scheme": scheme, "capacity": 320, "shown": 1}
     for count in steps:
         step = jnp.asarray(8.0 / count)
         path = runge_kutta.forward(None, jnp.ones(1), jnp.zeros(()), step, jnp.asarray(count), **options)

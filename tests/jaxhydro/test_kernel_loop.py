@@ -50,7 +50,7 @@ def kernel(interpret: bool):
 def test_a_kernel_gives_what_the_loop_gives(problem):
     def one(driver, y):
         options = {"rate": all_operations, "capacity": STEPS, "shown": 5}
-        return adams_bashforth.direct(driver, y, jnp.zeros(()), jnp.asarray(STEP), jnp.asarray(STEPS), **options)
+        return adams_bashforth.forward(driver, y, jnp.zeros(()), jnp.asarray(STEP), jnp.asarray(STEPS), **options)
 
     exact = jax.jit(jax.vmap(one, in_axes=(0, None)))(*problem)
     found = kernel(True)(*problem)

@@ -1,7 +1,7 @@
 """Columns of all candidate effects at a fitted point."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
 from calibration.discovery.fit_state import FitState
 from calibration.discovery.linearisations import Linearisation
+from calibration.discovery.search import ListedVariant
 from calibration.discovery.selection.linear_model import LinearModel
 from calibration.discovery.selection.study_linear_model import linear_model
 from calibration.discovery.selection.subsets import Variant
@@ -47,28 +48,38 @@ class CandidateColumns:
         """Variants that are mistakes of the laboratory."""
         return frozenset(i for i, one in enumerate(self.variants) if one.laboratory)
 
+    def listed(self, variants: Iterable[int]) -> list[ListedVariant]:
+        """Some of the variants by name and values of their shapes."""
+        return [ListedVariant(self.variants[i].name, dict(self.values[i])) for i in variants]
+
     def present(self, chosen: Sequence[Candidate]) -> tuple[int, ...]:
         """Variants of the effects in the model: each effect's first."""
         names = [one.name for one in self.variants]
         return tuple(names.index(one.name) for one in chosen)
 
 
-def linearise_candidates(fits: EffectFits, state: FitState) -> CandidateColumns:
+def linearise_candidates(fits: EffectFits, state: FitState, among: Sequence[ListedVariant] | None = None) -> CandidateColumns:
     """Linearise a fitted model along every candidate effect, at every value of its shapes.
 
     Args:
         fits: Study, candidates, priors.
         state: The fitted model.
+        among: Candidates at values of their shapes; None: all. Further values that slopes suggest are always tried.
     """
     look = state.look
     if state.chosen:  # a fit moves on with the slopes at hand, and leaves the shapes of its effects alone
         look = fits.study.linearise(look.place, fits.active(state.chosen))
     names = {one.name for one in state.chosen}
-    return candidate_columns(fits, look, state.chosen, [one for one in fits.setup.candidates if one.name not in names])
+    others = [one for one in fits.setup.candidates if one.name not in names]
+    return candidate_columns(fits, look, state.chosen, others, among)
 
 
 def candidate_columns(
-    fits: EffectFits, look: Linearisation, chosen: Sequence[Candidate], candidates: Sequence[Candidate]
+    fits: EffectFits,
+    look: Linearisation,
+    chosen: Sequence[Candidate],
+    candidates: Sequence[Candidate],
+    among: Sequence[ListedVariant] | None = None,
 ) -> CandidateColumns:
     """A linear model of the effects in a model and of other candidates.
 
@@ -77,6 +88,7 @@ def candidate_columns(
         look: Linearisation along all free directions of the model.
         chosen: The effects in the model.
         candidates: Other candidates, which are linearised along.
+        among: Which of them, at values of their shapes; None: all.
     """
     gathered, others = _Columns(fits, look), []
     for one in (*chosen, *candidates):
@@ -88,6 +100,7 @@ def candidate_columns(
             others.append(one)
     # the finders of further shapes need slopes first; what those passes have no room for goes with what is found
     declared = [(one, at) for one in others for at in one.grid or ({},)]
+    declared = [(one, at) for one, at in declared if among is None or any(is_listed(one, at, it) for it in among)]
     passes = packed(sorted(declared, key=lambda pair: pair[0].shape_finder is None), fits.study.width)
     first = [some for some in passes if any(one.shape_finder is not None for one, _ in some)]
     later = [pair for some in passes[len(first) :] for pair in some]
@@ -101,6 +114,12 @@ def candidate_columns(
         np.repeat(np.arange(len(fits.study.series)), fits.study.dof.shape[1]),
         look,
     )
+
+
+def is_listed(one: Candidate, at: Mapping[str, float], entry: ListedVariant) -> bool:
+    """Whether an entry of a list means a candidate at declared values of its shapes. One with fitted or found values means all."""
+    other = entry.values not in (one.grid or ({},))
+    return one.name == entry.name and (one.shape_finder is not None or other or entry.values == at)
 
 
 def packed(some: Sequence[CandidateValues], width: int) -> list[list[CandidateValues]]:

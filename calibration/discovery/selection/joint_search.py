@@ -27,10 +27,11 @@ from calibration.discovery.selection.subsets import Subset
 from calibration.discovery.set_up import StudySetup
 from calibration.formatting import listed
 
-MAX_ROUNDS = 6  # linearisations along all candidates
+MAX_ROUNDS = 6  # linearisations along candidates
 STEP_ITERATIONS = 15  # iterations of a fit with the slopes at hand
 USUAL_ROUNDS = 3  # for progress
 FREE_ROUNDS = 3  # rounds after which what most sets have stays
+WHOLE_ROUNDS = 2  # rounds along all candidates; later ones are along those that help, or are in probable sets
 BEGIN, END = 0.25, 0.65  # progress of the rounds
 
 
@@ -68,8 +69,10 @@ class JointSearch(Search):
         Returns:
             The most probable subset.
         """
-        self.say(f"round {number}: linearising along {len(self.setup.candidates)} effects", self.share(number - 1))
-        self.columns = columns = linearise_candidates(self, state)
+        among = self.shortlist if number > WHOLE_ROUNDS and self.shortlist else None
+        count = len(self.setup.candidates if among is None else {one.name for one in among})
+        self.say(f"round {number}: linearising along {count} effects", self.share(number - 1))
+        self.columns = columns = linearise_candidates(self, state, among)
 
         def told(count: int) -> None:
             self.say(f"round {number}: comparing sets of effects", self.share(number - 0.6), count)
@@ -80,6 +83,9 @@ class JointSearch(Search):
         found = self.selector.run(present)
         self.probability = found.probability()
         self.score(self.selector.subset(present), number)
+        if among is None:
+            probable = {i for one in found.subsets for i in one.variants}
+            self.shortlist += columns.listed(probable | self.selector.helpful(found.best))
         best, laboratory = found.best, columns.laboratory
         mine = laboratory.intersection(best.variants)
         if state.chosen or not mine or mine == set(best.variants):

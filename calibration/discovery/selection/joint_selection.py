@@ -138,6 +138,10 @@ class JointSelection:
         """Decrease of -2 ln L and prior by one linear step along each variant of other candidates."""
         return {i: gain for i, (gain, _, _) in self.steps(subset).items()}
 
+    def helpful(self, subset: Subset) -> set[int]:
+        """Variants of other candidates that raise the evidence by one linear step."""
+        return {i for i, (_, evidence, _) in self.steps(subset).items() if evidence > 0}
+
     def neighbours(self, subset: Subset) -> list[Subset]:
         """Subsets with one effect more, one less, or one exchanged."""
         more = self.additions(subset)[:MAX_ADDITIONS] if len(subset.variants) < MAX_EFFECTS else []
