@@ -25,6 +25,8 @@ ELEMENTS = 11  # of a pontoon: some 100 strips with the columns'
 PLATFORM = "volturnus-s-focal"
 AWAY = np.array([15.0, 0.0, 1.0, 0.0, np.deg2rad(5.0), 0.0])  # where kinematics are compared
 
+DIRECTIONS = 100  # of derivatives at once
+
 
 class Hour:
     """A sea of `duration` s and the platform in it, as case 4 of the paper: second order, stretching, MacCamy and Fuchs."""
@@ -130,6 +132,12 @@ def speed(hour: Hour, rounds: int, seconds: float) -> tuple[list[Row], list[str]
     return rows, notes
 
 
+def along_directions(position: Callable) -> Callable:
+    """Derivatives along many random directions of the parameters, by one forward pass."""
+    basis = jnp.asarray(np.random.default_rng(0).standard_normal((11, DIRECTIONS)))
+    return lambda x: jax.jacfwd(lambda z: position(x + basis @ z))(jnp.zeros(DIRECTIONS))
+
+
 def derivatives(hour: Hour, rounds: int) -> tuple[list[Row], list[str]]:
     """Jacobian and gradient in simulations of the same sea."""
     sea = hour.prepared(2)
@@ -137,6 +145,7 @@ def derivatives(hour: Hour, rounds: int) -> tuple[list[Row], list[str]]:
     runs = {
         "one": hour.case(sea, "forward", lambda f: f),
         "jacobian": hour.case(sea, "forward", jax.jacfwd),
+        "directions": hour.case(sea, "forward", along_directions),
         "gradient": hour.case(sea, "reverse", lambda f: jax.grad(lambda x: jnp.mean((f(x) * scale) ** 2))),
     }
     turns = contest(runs, rounds)
@@ -147,6 +156,7 @@ def derivatives(hour: Hour, rounds: int) -> tuple[list[Row], list[str]]:
 
     rows = [
         Row("Jacobian of 11 parameters in a sea", found("jacobian"), "5", "5.7"),
+        Row(f"Derivatives along {DIRECTIONS} directions in a sea", found("directions"), "25"),
         Row("Reverse gradient of a sea", found("gradient"), "3, 50 MB", "3.2, 55 MB"),
     ]
     return rows, ["Memory is XLA's temporary buffers beyond the sea's own series."]

@@ -9,6 +9,9 @@ import pytest
 from scipy.integrate import dblquad
 from scipy.optimize import minimize
 
+from calibration.discovery.effects.candidates import Candidate
+from calibration.discovery.search import ListedVariant
+from calibration.discovery.selection.candidate_columns import is_listed
 from calibration.discovery.selection.cross_validation import held_out_gain, left_out_deviances
 from calibration.discovery.selection.joint_selection import MAX_EFFECTS, JointSelection
 from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, bounded_minimum
@@ -268,3 +271,17 @@ def test_products_after_a_fit_are_those_of_its_rows() -> None:
     cross[:, -1] += (one.value + found.own[0]) / one.width**2
     whole -= cross.T @ np.linalg.solve(side.T @ one.slopes + np.diag(1 / one.width**2), cross)
     assert model.products_after(found) == pytest.approx(whole, rel=1e-8, abs=1e-8)
+
+
+def test_later_rounds_are_along_the_candidates_that_are_listed() -> None:
+    """By the declared values of their shapes that are listed; by all where values were fitted or found, or slopes find more."""
+    slow, fast = {"memory.frequency": 0.3}, {"memory.frequency": 0.6}
+    memory = Candidate("radiation_memory", "surge", ("memory.strength",), grid=(slow, fast))
+    assert is_listed(memory, slow, ListedVariant("radiation_memory (surge)", slow))
+    assert not is_listed(memory, fast, ListedVariant("radiation_memory (surge)", slow))
+    assert is_listed(memory, fast, ListedVariant("radiation_memory (surge)", {}))
+    assert not is_listed(memory, slow, ListedVariant("radiation_memory (heave)", slow))
+    oscillator = replace(memory, shape_finder=lambda *_: [])
+    assert is_listed(oscillator, fast, ListedVariant("radiation_memory (surge)", slow))
+    friction = Candidate("coulomb_friction", "surge", ("friction.force",))
+    assert is_listed(friction, {}, ListedVariant("coulomb_friction (surge)", {}))

@@ -117,7 +117,7 @@ def candidate_columns(
 
 
 def is_listed(one: Candidate, at: Mapping[str, float], entry: ListedVariant) -> bool:
-    """Whether an entry of a list means a candidate at declared values of its shapes. One with fitted or found values means all."""
+    """Whether an entry of a list means a candidate at declared values of its shapes; one with other values means all."""
     other = entry.values not in (one.grid or ({},))
     return one.name == entry.name and (one.shape_finder is not None or other or entry.values == at)
 
