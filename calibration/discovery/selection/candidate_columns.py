@@ -10,7 +10,7 @@ from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
 from calibration.discovery.fit_state import FitState
-from calibration.discovery.linearisations import Linearisation
+from calibration.discovery.linearisations import Linearisation, Point
 from calibration.discovery.search import ListedVariant
 from calibration.discovery.selection.linear_model import LinearModel
 from calibration.discovery.selection.study_linear_model import linear_model
@@ -66,12 +66,11 @@ def linearise_candidates(fits: EffectFits, state: FitState, among: Sequence[List
         state: The fitted model.
         among: Candidates at values of their shapes; None: all. Further values that slopes suggest are always tried.
     """
-    look = state.look
-    if state.chosen:  # a fit moves on with the slopes at hand, and leaves the shapes of its effects alone
-        look = fits.study.linearise(look.place, fits.active(state.chosen))
     names = {one.name for one in state.chosen}
     others = [one for one in fits.setup.candidates if one.name not in names]
-    return candidate_columns(fits, look, state.chosen, others, among)
+    # a fit moves on with the slopes at hand, and leaves the shapes of its effects alone
+    active = fits.active(state.chosen) if state.chosen else None
+    return candidate_columns(fits, state.look, state.chosen, others, among, active)
 
 
 def candidate_columns(
@@ -80,6 +79,7 @@ def candidate_columns(
     chosen: Sequence[Candidate],
     candidates: Sequence[Candidate],
     among: Sequence[ListedVariant] | None = None,
+    anew: Sequence[int] | None = None,
 ) -> CandidateColumns:
     """A linear model of the effects in a model and of other candidates.
 
@@ -89,22 +89,28 @@ def candidate_columns(
         chosen: The effects in the model.
         candidates: Other candidates, which are linearised along.
         among: Which of them, at values of their shapes; None: all.
+        anew: Directions along which the model is linearised anew, at the same point; None: `look` is taken.
     """
-    gathered, others = _Columns(fits, look), []
-    for one in (*chosen, *candidates):
-        if set(fits.study.index(one.amplitudes)) <= set(fits.base):
-            gathered.add_nearly_known(one)
-        elif one in chosen:
-            gathered.add(one, [look.active.index(i) for i in fits.study.index(one.labels)], {})
-        else:
-            others.append(one)
+    study = fits.study
+    others = [one for one in candidates if not set(study.index(one.amplitudes)) <= set(fits.base)]
     # the finders of further shapes need slopes first; what those passes have no room for goes with what is found
     declared = [(one, at) for one in others for at in one.grid or ({},)]
     declared = [(one, at) for one, at in declared if among is None or any(is_listed(one, at, it) for it in among)]
-    passes = packed(sorted(declared, key=lambda pair: pair[0].shape_finder is None), fits.study.width)
+    passes = packed(sorted(declared, key=lambda pair: pair[0].shape_finder is None), study.width)
     first = [some for some in passes if any(one.shape_finder is not None for one, _ in some)]
     later = [pair for some in passes[len(first) :] for pair in some]
-    gathered.linearise(packed([*gathered.linearise(first), *later], fits.study.width))
+    active = look.active if anew is None else tuple(anew)
+    base = [] if anew is None else [(look.place, active)]
+    seen = study.linearise_all([*base, *jobs_of(fits, look.place, active, first)])
+    look, seen = (look, seen) if anew is None else (seen[0], seen[1:])
+    gathered = _Columns(fits, look)
+    for one in (*chosen, *candidates):
+        if set(study.index(one.amplitudes)) <= set(fits.base):
+            gathered.add_nearly_known(one)
+        elif one in chosen:
+            gathered.add(one, [look.active.index(i) for i in study.index(one.labels)], {})
+    last = packed([*gathered.take(first, seen), *later], study.width)
+    gathered.take(last, study.linearise_all(jobs_of(fits, look.place, active, last)))
     return CandidateColumns(
         linear_model(fits, look, np.hstack(gathered.slopes), gathered.directions),
         tuple(range(len(fits.base))),
@@ -114,6 +120,25 @@ def candidate_columns(
         np.repeat(np.arange(len(fits.study.series)), fits.study.dof.shape[1]),
         look,
     )
+
+
+def jobs_of(
+    fits: EffectFits, place: Point, active: Sequence[int], passes: Sequence[Sequence[CandidateValues]]
+) -> list[tuple[Point, tuple[int, ...]]]:
+    """Points and directions of passes along candidates.
+
+    Args:
+        fits: Study, candidates, priors.
+        place: The point of the model.
+        active: The model's own directions, which are left out.
+        passes: Candidates and values of their shapes.
+    """
+    jobs = []
+    for some in passes:
+        there = fits.with_values(place, {k: v for _, at in some for k, v in at.items()})
+        free = dict.fromkeys(i for one, _ in some for i in fits.study.index(one.amplitudes) if i not in active)
+        jobs.append((there, tuple(free)))
+    return jobs
 
 
 def is_listed(one: Candidate, at: Mapping[str, float], entry: ListedVariant) -> bool:
@@ -179,23 +204,19 @@ class _Columns:
         slopes = self.look.slopes[:, [self.look.active.index(i) for i in mine]]
         self.add(one, self.append(slopes, mine), {})
 
-    def linearise(self, passes: Sequence[Sequence[CandidateValues]]) -> list[CandidateValues]:
-        """Linearise along candidates at values of their shapes.
+    def take(self, passes: Sequence[Sequence[CandidateValues]], looks: Sequence[Linearisation]) -> list[CandidateValues]:
+        """Take the slopes along candidates at values of their shapes.
 
         Args:
             passes: Candidates and values.
+            looks: Linearisations along them.
 
         Returns:
             Further values to try.
         """
         active, study = self.look.active, self.study
-        jobs = []
-        for some in passes:
-            place = self.fits.with_values(self.look.place, {k: v for _, at in some for k, v in at.items()})
-            free = dict.fromkeys(i for one, _ in some for i in study.index(one.amplitudes) if i not in active)
-            jobs.append((place, tuple(free)))
         further: list[CandidateValues] = []
-        for some, seen in zip(passes, study.linearise_all(jobs), strict=True):
+        for some, seen in zip(passes, looks, strict=True):
             numbers = dict(zip(seen.active, self.append(seen.slopes, list(seen.active)), strict=True))
             for one, at in some:
                 amplitudes = study.index(one.amplitudes)
