@@ -1,4 +1,4 @@
-"""Short texts of models, motions and natural modes, for `repr`."""
+"""Short texts of models, motions, natural modes and seas, for `repr`."""
 
 from dataclasses import fields
 from typing import TYPE_CHECKING
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from jaxhydro.dynamics.response import Response
     from jaxhydro.dynamics.statics import Modes
     from jaxhydro.parameters import AbstractEffect
+    from jaxhydro.waves.components import Components
+    from jaxhydro.waves.irregular_sea import IrregularSea
 
 SMALLEST = 1e-6  # m or deg: what is smaller is shown as 0
 
@@ -104,3 +106,34 @@ def modes_summary(modes: "Modes") -> str:
     said = [f"Modes: {count} natural period{'' if count == 1 else 's'}"]
     said += [f"  {motion:<5} {period:>8.2f} s" for motion, period in zip(modes.motion, modes.period, strict=True)]
     return "\n".join([*said, *([f"  unstable in {', '.join(modes.unstable)}"] if modes.unstable else [])])
+
+
+def components_summary(waves: "Components") -> str:
+    """Number, frequencies, height and headings of wave components.
+
+    Args:
+        waves: The components.
+    """
+    amplitude, frequency = np.asarray(waves.amplitude), np.asarray(waves.omega) / (2 * np.pi)
+    heading = np.rad2deg(np.asarray(waves.heading))
+    if not frequency.size:
+        return "no wave components"
+    where = f"{heading.min():.3g}" if np.ptp(heading) < SMALLEST else f"{heading.min():.3g} to {heading.max():.3g}"
+    if frequency.size == 1:
+        return f"one wave component of {amplitude[0]:.4g} m, {1 / frequency[0]:.4g} s, heading {where} deg"
+    high = 4 * float((0.5 * amplitude**2).sum()) ** 0.5
+    band = f"{frequency.min():.3g} to {frequency.max():.3g} Hz"
+    return f"{frequency.size} wave components, {band}: Hs {high:.3g} m, heading {where} deg"
+
+
+def irregular_sea_summary(sea: "IrregularSea") -> str:
+    """Order, water and components of an irregular sea.
+
+    Args:
+        sea: The sea.
+    """
+    grown = f", grown from rest over {float(sea.ramp):g} s" if float(sea.ramp) else ""
+    depth = f"in water {float(sea.environment.depth):g} m deep"
+    return (
+        f"IrregularSea of order {sea.order} {depth}, stretching {sea.stretching}{grown}\n  {components_summary(sea.components)}"
+    )

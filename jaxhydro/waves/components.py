@@ -32,6 +32,13 @@ class Components(eqx.Module):
     phase: Float[Array, " w"]  # rad
     first: int | None = eqx.field(static=True, default=None)
 
+    def __repr__(self) -> str:
+        """Number, frequencies, height and headings; shapes where the numbers are not computed yet."""
+        from jaxhydro.display.summaries import are_numbers, components_summary
+
+        known = are_numbers(self) and self.amplitude.ndim == 1
+        return f"Components: {components_summary(self)}" if known else eqx.Module.__repr__(self)
+
     @property
     def harmonics(self) -> tuple[int, int]:
         """Numbers of the first and the last harmonic.

@@ -69,6 +69,13 @@ class IrregularSea(AbstractSea):
         for kind in self.kinds:
             check(kinds=(kind, KINDS))
 
+    def __repr__(self) -> str:
+        """Order, water and components; shapes where the numbers are not computed yet."""
+        from jaxhydro.display.summaries import are_numbers, irregular_sea_summary
+
+        known = are_numbers((self.components, self.environment.depth, self.ramp)) and self.components.amplitude.ndim == 1
+        return irregular_sea_summary(self) if known else eqx.Module.__repr__(self)
+
     def direct(self) -> WaveSea:
         """The same sea by direct summation: exact, with N components and N² pairs at every point.
 

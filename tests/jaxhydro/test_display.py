@@ -15,6 +15,7 @@ from jaxhydro.dynamics.statics import Modes
 from jaxhydro.hull.outline import element_outlines
 from jaxhydro.platform.build import members_of
 from jaxhydro.plots.hull_drawing import POINTS, outline
+from jaxhydro.waves.components import components
 
 TIMES = np.arange(0.0, 20.0, 0.5)
 
@@ -52,6 +53,19 @@ def test_a_motion_in_a_few_lines(response: jh.Response) -> None:
     assert lines[1].split()[1:] == ["-1.99", "to", "2", "m"]
     assert lines[2].split()[1:] == ["0", "to", "0", "m"]
     assert lines[5].split()[1:] == ["-3", "to", "2.99", "deg"]
+
+
+def test_seas_in_a_few_lines() -> None:
+    water = jh.Environment(1025.0, 200.0)
+    waves = components(jnp.array([0.3, 0.4]), 2 * jnp.pi * jnp.array([0.1, 0.11]), water)
+    assert repr(waves) == "Components: 2 wave components, 0.1 to 0.11 Hz: Hs 1.41 m, heading 0 deg"
+    said = repr(jh.IrregularSea(waves, water, 2, ramp=50.0))
+    assert said.startswith("IrregularSea of order 2 in water 200 m deep, stretching vertical, grown from rest over 50 s\n")
+    one = jax.tree.map(lambda x: x[:1], waves)
+    assert repr(one) == "Components: one wave component of 0.3 m, 10 s, heading 0 deg"
+    shown: list[str] = []
+    jax.jit(lambda w: shown.append(repr(w)))(waves)
+    assert "f64[2]" in shown[0] and "\n" not in shown[0].split("(")[0]
 
 
 def test_uneven_and_single_samples_have_a_text() -> None:
