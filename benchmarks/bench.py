@@ -28,7 +28,7 @@ from jaxhydro.sweep import worker
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.md"
 HEADINGS = ("what", "result", "goal", "prototype")
-PARTS = ("decay", "sea", "batch", "sweep", "fit")
+PARTS = ("decay", "sea", "derivatives", "batch", "sweep", "fit")
 SLOW = "sweep"  # is not in a smoke run
 SEARCHES = ["DE", "GA", "CMA-ES"]
 PACKAGES = ("jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix", "pymoo")

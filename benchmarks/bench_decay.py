@@ -179,5 +179,4 @@ def measure(quick: bool) -> Iterator[tuple[list[Row], list[str]]]:
     decay = Decay(60.0 if quick else 600.0)
     rounds = 2 if quick else 7
     yield against_numpy(decay, rounds)
-    yield derivatives(decay, rounds, quick)
     yield waiting(decay.duration, quick)

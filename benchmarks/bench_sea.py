@@ -206,5 +206,3 @@ def measure(quick: bool) -> Iterator[tuple[list[Row], list[str]]]:
     yield kinematics(hour)
     yield preparing(hour)
     yield from profile(hour, 2 if quick else 5)
-    if not quick:
-        yield derivatives(hour, 3)
