@@ -175,7 +175,7 @@ COMPILED = {
 
 
 def measure(quick: bool) -> Iterator[tuple[list[Row], list[str]]]:
-    """All of this file, part by part."""
+    """All of this file but derivatives, part by part."""
     decay = Decay(60.0 if quick else 600.0)
     rounds = 2 if quick else 7
     yield against_numpy(decay, rounds)

@@ -24,7 +24,6 @@ STEP = 0.25  # s
 ELEMENTS = 11  # of a pontoon: some 100 strips with the columns'
 PLATFORM = "volturnus-s-focal"
 AWAY = np.array([15.0, 0.0, 1.0, 0.0, np.deg2rad(5.0), 0.0])  # where kinematics are compared
-
 DIRECTIONS = 100  # of derivatives at once
 
 
@@ -198,7 +197,7 @@ def preparing(hour: Hour) -> tuple[list[Row], list[str]]:
 
 
 def measure(quick: bool) -> Iterator[tuple[list[Row], list[str]]]:
-    """All of this file, and `bench_profile`, part by part."""
+    """All of this file but derivatives, and `bench_profile`, part by part."""
     from benchmarks.bench_profile import profile
 
     hour = Hour(120.0 if quick else 3600.0)

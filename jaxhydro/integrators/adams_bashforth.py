@@ -155,8 +155,8 @@ def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int, shown: int):
         row = jnp.minimum(index, len(ROWS.time) - 1)
         found = jax.lax.dynamic_update_index_in_dim(found, d_y[:shown], _row(index)[3] + index - row, 0)
 
-        def back(evaluations):
-            return jax.lax.dynamic_index_in_dim(slopes, (index - evaluations) % STORED_SLOPES, 0, keepdims=False)
+        def back(ago):
+            return jax.lax.dynamic_index_in_dim(slopes, (index - ago) % STORED_SLOPES, 0, keepdims=False)
 
         (last,), (weight,) = jnp.array(ROWS.at_back)[row], jnp.array(ROWS.at_weight)[row]
         new = slope @ (d_y + step * weight * back(last)) + push
