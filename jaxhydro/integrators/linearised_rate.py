@@ -19,8 +19,8 @@ ACCELERATION = 1  # number of the part that costs most, of states that begin wit
 def linearised_rate(rate: Rate, driver: Any, d_driver: Any) -> Linearised:
     """Slopes of a right-hand side by the state, and along a direction of its driver.
 
-    The acceleration is differentiated in reverse, once for the state and for all that moves in the driver. So many directions,
-    by `jax.vmap`, cost a matrix product each. The other parts, the memories of loads, take little.
+    The acceleration is differentiated in reverse, once for the state and for all that moves in the driver. With `jax.vmap` over
+    directions, each then costs a matrix product. The other parts, the memories of loads, take little.
 
     Args:
         rate: Right-hand side.
@@ -29,7 +29,8 @@ def linearised_rate(rate: Rate, driver: Any, d_driver: Any) -> Linearised:
     """
     moves = jax.tree.map(lambda _, d: d is not None, driver, d_driver, is_leaf=lambda leaf: leaf is None)
     moved, still = eqx.partition(driver, moves)
-    along = [jnp.asarray(d) for d in jax.tree.leaves(d_driver)]
+    along, _ = ravel_pytree(d_driver)
+    d_moved = jax.tree.unflatten(jax.tree.structure(moved), jax.tree.leaves(d_driver))
 
     def part(i: int, time: Float[Array, ""], state: Float[Array, " s"], moved: Any) -> Float[Array, " _"]:
         return rate(eqx.combine(moved, still), time, state)[i]
@@ -38,18 +39,17 @@ def linearised_rate(rate: Rate, driver: Any, d_driver: Any) -> Linearised:
         found, transpose = jax.vjp(lambda *at: part(i, time, *at), state, moved)
         by_state, by_moved = jax.vmap(transpose)(jnp.eye(found.shape[0]))
         columns = [leaf.reshape(found.shape[0], -1) for leaf in jax.tree.leaves(by_moved)]
-        return by_state, jnp.concatenate(columns, axis=1) @ ravel_pytree(along)[0]
+        return by_state, jnp.concatenate(columns, axis=1) @ along
 
     def light(i: int, time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Array, Array]:
         by_state = jax.jacrev(lambda y: part(i, time, y, moved))(state)
-        if not along:
+        if not along.size:
             return by_state, jnp.zeros(by_state.shape[0])
-        d_moved = jax.tree.unflatten(jax.tree.structure(moved), along)
         return by_state, jax.jvp(lambda moved: part(i, time, state, moved), (moved,), (d_moved,))[1]
 
     def at(time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Array, Array]:
         parts = len(jax.eval_shape(rate, driver, time, state))
-        found = [heavy(i, time, state) if along and i == ACCELERATION else light(i, time, state) for i in range(parts)]
+        found = [heavy(i, time, state) if along.size and i == ACCELERATION else light(i, time, state) for i in range(parts)]
         slope, push = zip(*found, strict=True)
         return jnp.concatenate(slope), jnp.concatenate(push)
 
