@@ -11,6 +11,7 @@ from jaxhydro.environment import Environment
 from jaxhydro.hull.hull import Hull, Wetted
 from jaxhydro.hull.submerged import EndShape, Lines, StripShape
 from jaxhydro.loads.instant import Instant
+from jaxhydro.loads.slender_flow import SlenderFlow, slender_flow
 from jaxhydro.rotations import rotation, turned
 from jaxhydro.waves.flow import Cylinders, EndFlow, Flow, StripFlow
 from jaxhydro.waves.sea import AbstractSea
@@ -47,6 +48,7 @@ def instant(
     current: Callable[[Float[Array, " p"]], Float[Array, "3 p"] | None] = lambda _: None,
     replaced: Float[Array, ""] | None = None,
     fast_displacement: Float[Array, "2"] | None = None,
+    second_order: Float[Array, ""] | None = None,
 ) -> Instant:
     """Motion, submerged geometry and flow at an instant.
 
@@ -62,6 +64,7 @@ def instant(
         current: Steady current (m/s, earth axes) at heights over still water (m), or None.
         replaced: Fraction of the strips' inertial wave load that other loads replace.
         fast_displacement: Part of the horizontal displacement (m) that those other loads do not follow.
+        second_order: Fraction of the second-order forces on slender members that strips and ends have.
 
     Returns:
         What the loads read.
@@ -73,7 +76,12 @@ def instant(
     points = _points(position, matrix, submerged, hull, conventions)
     if (steady := current(points[2])) is not None:
         still = still + _along(matrix.T @ steady, hull)
-    flow = sea.flow(time, points, cylinders)
+    flow = sea.flow(time, points, cylinders) if second_order is None else sea.flow(time, points, cylinders, gradient=True)
+    slender = None
+    if second_order is not None:
+        share = second_order if replaced is None else second_order * (1 - replaced)
+        slender = _slender(share, velocity, hull, submerged, matrix, flow)
+        flow = None if flow is None else flow.convected(second_order, cylinders)
     if flow is not None and replaced is not None:
         flow = flow.weakened(1 - replaced)
     strip_flow, end_flow = _flow_past(flow, still, submerged, matrix, hull)
@@ -105,6 +113,7 @@ def instant(
         lines,
         sea.drift(time),
         None if replaced is None else sea.excitation(time, _origin(slow, matrix, conventions)[0]),
+        slender,
         _lid(flow, matrix, hull),
     )
 
@@ -225,6 +234,22 @@ def _flow_past(
     at = jnp.concatenate([jnp.arange(n, n + whole), jnp.array(ends.strip, dtype=int)]) if ends.strip else slice(n, n + whole)
     velocity, acceleration = ((toward_end * field[:, at]).sum(axis=0) for field in (flow.velocity, flow.acceleration))
     return strips, EndFlow(own_end + velocity, acceleration, flow.pressure[at], submerged.ends)
+
+
+def _slender(
+    share: Float[Array, ""],
+    velocity: Float[Array, "6"],
+    hull: Hull,
+    submerged: _Submerged,
+    matrix: Float[Array, "3 3"],
+    flow: Flow | None,
+) -> SlenderFlow:
+    """Flow past slender members to second order, from the flow at `_points`."""
+    if flow is None or flow.gradient is None:
+        return slender_flow(share, velocity, hull, submerged.reach, None, None)
+    axes = (matrix if flow.axes is None else flow.axes.T @ matrix).T
+    gradient = jnp.einsum("ia,abp,jb->ijp", axes, flow.gradient, axes)
+    return slender_flow(share, velocity, hull, submerged.reach, axes @ flow.velocity, gradient)
 
 
 def _lid(flow: Flow | None, matrix: Float[Array, "3 3"], hull: Hull) -> tuple[Float[Array, " k"], Float[Array, "3 k"]] | None:

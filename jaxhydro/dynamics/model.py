@@ -267,6 +267,7 @@ class Model(eqx.Module):
             cylinders=self.cylinders,
             current=self.current,
             replaced=optional_sum([load.replaces() for load in self.loads]),
+            second_order=optional_sum([load.second_order_share() for load in self.loads]),
             fast_displacement=optional_sum(
                 [load.fast_displacement(of) for load, of in zip(self.loads, state.memory, strict=True)]
             ),

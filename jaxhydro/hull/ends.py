@@ -34,6 +34,7 @@ class Ends(eqx.Module):
     label: tuple[int, ...] = eqx.field(static=True)
     labels: tuple[str, ...] = eqx.field(static=True)
     strip: tuple[int, ...] = eqx.field(static=True)  # the strip of every face
+    beside: tuple[int, ...] = eqx.field(static=True)  # the strip next to every end, then that of every face
     shares: Shares = eqx.field(static=True, default=())
     # ends of members that lie at the surface: their place, the element beside, its wet share at the reference position
     afloat: tuple[tuple[int, int, float], ...] = eqx.field(static=True, default=())
@@ -67,12 +68,14 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     rows: list[_End] = []
     faces: list[_End] = []
     of: list[int] = []
+    beside: list[int] = []
     afloat: list[tuple[int, int, float]] = []
     taper, count, elements = np.asarray(strips.taper), 0, 0
     for member in members:
         upright = bool(member.axis @ (member.b - member.a) > 0)
         label = labels.index(member.group) if member.column else 0
         orders = member.elements_and_orders(size)
+        beside += [count, count + sum(order for *_, order in orders) - 1]
         for point, fraction, far in ((member.a, 0.0, not upright), (member.b, 1.0, upright)):
             area = float(member.area(member.size(np.array([fraction])))[0])
             radius = math.sqrt(area / math.pi) if member.column else 0.0
@@ -100,7 +103,9 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     numbers = [np.array(column, float) for column in columns[3:-1]]
     fields: dict[str, Any] = dict(zip(_End._fields, map(on_device, (*vectors, *numbers))))
     shares = shares_of((member.group, member.shared) for member in members)
-    return Ends(**fields, label=columns[-1], labels=labels, strip=tuple(of), shares=shares, afloat=tuple(afloat))
+    return Ends(
+        **fields, label=columns[-1], labels=labels, strip=tuple(of), beside=(*beside, *of), shares=shares, afloat=tuple(afloat)
+    )
 
 
 def _free(rows: Sequence[_End]) -> list[_End]:

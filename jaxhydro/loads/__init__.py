@@ -33,6 +33,7 @@ from jaxhydro.loads.nonlinear_hydrostatics import NonlinearHydrostatics
 from jaxhydro.loads.quadratic_damping import QuadraticDamping
 from jaxhydro.loads.radiation_memory import RadiationMemory
 from jaxhydro.loads.rotor_thrust import RotorThrust
+from jaxhydro.loads.slender_body_forces import SlenderBodyForces
 from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.loads.stiffness import Stiffness
 from jaxhydro.loads.strip_inertia import StripInertia
@@ -84,6 +85,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "coupled_stiffness": CoupledStiffness,
     "covered_ends": CoveredEnds,
     "wave_excitation": WaveExcitation,
+    "slender_body_forces": SlenderBodyForces,
 }
 
 AnyLines = MooringLines | CatenaryLines | TensionTableLines

@@ -95,6 +95,10 @@ class AbstractLoad(AbstractEffect):
         """Fraction of the added mass of strips and ends that this load replaces (0 to 1), or None."""
         return None
 
+    def second_order_share(self) -> Float[Array, ""] | None:
+        """Fraction of the second-order forces on slender members that strips and ends have, or None."""
+        return None
+
     def fast_displacement(self, memory: Any) -> Float[Array, "2"] | None:
         """Part of the horizontal displacement (m, earth axes) that computed wave forces do not follow, or None.
 

@@ -7,6 +7,7 @@ from jaxtyping import Array, Bool, Float
 from jaxhydro.environment import Environment
 from jaxhydro.hull.hull import Hull, Wetted
 from jaxhydro.hull.submerged import EndShape, Lines, StripShape
+from jaxhydro.loads.slender_flow import SlenderFlow
 from jaxhydro.waves.flow import EndFlow, StripFlow
 
 
@@ -33,6 +34,7 @@ class Instant(eqx.Module):
         lines: Distances and centripetal accelerations of strips and ends.
         drift: Squared wave envelopes (m²) of `AbstractSea.drift`, or None.
         excitation: First-order force (N, N m) of `AbstractSea.excitation`, or None.
+        slender: Flow past slender members to second order, or None.
         lid: Pressure over density (m²/s²) and acceleration (m/s², body axes) of the water at the points of `Hull.leaning`.
     """
 
@@ -52,6 +54,7 @@ class Instant(eqx.Module):
     lines: Lines
     drift: Float[Array, " d"] | None = None
     excitation: Float[Array, "6"] | None = None
+    slender: SlenderFlow | None = None
     lid: tuple[Float[Array, " k"], Float[Array, "3 k"]] | None = None
 
     def earth_velocity(self) -> Float[Array, "6"]:

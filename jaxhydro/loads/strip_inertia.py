@@ -3,6 +3,7 @@
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
+from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.coefficients import PerGroup, by_group, spread
@@ -33,14 +34,27 @@ class StripInertia(AbstractLoad):
     def act(self, now: Instant, memory: Any) -> Action:
         flow = now.strip_flow
         mass = now.environment.density * spread(now.hull.elements, self.Ca, "Ca")
+        second, at_ends, on_body = self._second_order(now, mass)
         if flow.acceleration is None:
-            return Action(element_mass=mass)
+            return Action(strip_force=second, element_mass=mass, end_force=at_ends, body_force=on_body)
         density, volume = now.environment.density, now.strip_shape.volume
         lid, moment = (0.0, None) if now.hull.waterplane is None else now.hull.waterplane.act(now)
+        if second is not None:
+            lid, moment = lid + second, on_body if moment is None else moment + on_body
         if flow.diffracted is None:
             force = now.over_strips(density + mass) * volume * flow.acceleration
-            return Action(strip_force=force + lid, element_mass=mass, body_force=moment)
+            return Action(strip_force=force + lid, element_mass=mass, body_force=moment, end_force=at_ends)
         force = jnp.where(now.diffracting(), density * flow.diffracted, now.over_strips(density + mass) * flow.acceleration)
         if flow.tuned is not None:
             force = force + now.over_strips(mass - density) * flow.tuned
-        return Action(strip_force=force * volume + lid, element_mass=mass, body_force=moment)
+        return Action(strip_force=force * volume + lid, element_mass=mass, body_force=moment, end_force=at_ends)
+
+    def _second_order(
+        self, now: Instant, mass: Float[Array, "2 e"]
+    ) -> tuple[Float[Array, "2 n"], Float[Array, " m"], Float[Array, "6"]] | tuple[None, None, None]:
+        """Second-order forces on the added mass: on strips, ends and body (`SlenderBodyForces`); None without them."""
+        if (slender := now.slender) is None:
+            return None, None, None
+        on_strips, moment = slender.on_strips(now.hull, now.strip_shape, now.over_strips(mass))
+        on_ends, force = slender.on_ends(now.hull, now.end_shape, now.over_strips(mass), now.end_flow.wet)
+        return on_strips, on_ends, moment + force

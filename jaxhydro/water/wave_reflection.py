@@ -40,9 +40,16 @@ class ReflectedSea(AbstractSea):
         here, then = (of(now, points) for now in (time, time - self.delay))
         return None if here is None else self._met(here, of(time - self.delay, self._mirror(points)), then)
 
-    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow | None:
-        here, then = (self.sea.flow(now, points, cylinders) for now in (time, time - self.delay))
-        back = self.sea.flow(time - self.delay, jnp.concatenate([self._mirror(points[:2]), points[2:]]), cylinders)
+    def flow(
+        self,
+        time: Float[Array, ""],
+        points: Float[Array, "3 n"],
+        cylinders: Cylinders | None = None,
+        gradient: bool = False,
+    ) -> Flow | None:
+        mirrored = jnp.concatenate([self._mirror(points[:2]), points[2:]])
+        here, then = (self.sea.flow(now, points, cylinders, gradient) for now in (time, time - self.delay))
+        back = self.sea.flow(time - self.delay, mirrored, cylinders, gradient)
         if here is None or back is None:
             return here
         normal = jnp.concatenate([self.along, jnp.zeros(1)])
@@ -54,7 +61,12 @@ class ReflectedSea(AbstractSea):
 
         velocity, acceleration, diffracted, tuned = map(both, ("velocity", "acceleration", "diffracted", "tuned"))
         pressure = self._met(here.pressure, back.pressure, then.pressure)
-        return Flow(velocity, acceleration, pressure, diffracted, tuned, here.axes)
+        slopes = None
+        if gradient:
+            mirror = jnp.eye(len(normal)) - 2 * jnp.outer(normal, normal)
+            turned = jnp.einsum("ia,abn,jb->ijn", mirror, back.gradient, mirror)
+            slopes = self._met(here.gradient, turned, then.gradient)
+        return Flow(velocity, acceleration, pressure, diffracted, tuned, here.axes, slopes)
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return self._level(self.sea.elevation, time, points)

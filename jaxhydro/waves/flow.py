@@ -1,6 +1,9 @@
 """Water velocity, acceleration and pressure at points, and flow past strips and ends."""
 
+from dataclasses import replace
+
 import equinox as eqx
+import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 
@@ -34,6 +37,8 @@ class Flow(eqx.Module):
             the vertical component across it with the same coefficient.
         tuned: Acceleration in waves that are long for the cylinder (m/s²), or None: see `diffraction.long_waves`.
         axes: Unit vectors of the components in earth axes, (3, a); None: earth axes.
+        gradient: Slope (1/s) of each component of the velocity along each axis, (a, a, n), symmetric as the flow has no
+            rotation; None where it is not asked for.
     """
 
     velocity: Float[Array, "a n"]
@@ -42,18 +47,44 @@ class Flow(eqx.Module):
     diffracted: Float[Array, "a n"] | None = None
     tuned: Float[Array, "a n"] | None = None
     axes: Float[Array, "3 a"] | None = None
+    gradient: Float[Array, "a a n"] | None = None
+
+    def convected(self, share: Float[Array, ""], cylinders: Cylinders | None = None) -> "Flow":
+        """The flow with the second-order part of its accelerations and pressures.
+
+        It adds `share` times the convective acceleration grad(v) v, and takes off `share` times the pressure v²/2 over
+        density. Cylinders are excited by twice the convective acceleration, their coefficient in long waves.
+
+        Args:
+            share: Fraction (-) of the second-order part.
+            cylinders: Which points diffract the waves, as in `AbstractSea.flow`.
+
+        References:
+            Rainey (1989), Journal of Fluid Mechanics 204, 295-324, section 2.
+        """
+        assert self.gradient is not None
+        convective = share * (self.gradient * self.velocity[None]).sum(axis=1)
+        pressure = self.pressure - 0.5 * share * (self.velocity**2).sum(axis=0)
+        diffracted, tuned = self.diffracted, self.tuned
+        if diffracted is not None and cylinders is not None:
+            on_cylinders = jnp.where(jnp.array(cylinders.of) >= 0, convective, 0.0)
+            diffracted = diffracted + 2 * on_cylinders
+            tuned = None if tuned is None else tuned + on_cylinders
+        return replace(self, acceleration=self.acceleration + convective, pressure=pressure, diffracted=diffracted, tuned=tuned)
 
     def weakened(self, share: Float[Array, ""]) -> "Flow":
         """The same velocities, with accelerations and pressures times `share` (-)."""
         diffracted, tuned = (None if field is None else share * field for field in (self.diffracted, self.tuned))
-        return Flow(self.velocity, share * self.acceleration, share * self.pressure, diffracted, tuned, self.axes)
+        acceleration, pressure = share * self.acceleration, share * self.pressure
+        return replace(self, acceleration=acceleration, pressure=pressure, diffracted=diffracted, tuned=tuned)
 
     def earth(self) -> "Flow":
         """The same flow along earth axes."""
         if (axes := self.axes) is None:
             return self
         extra = (None if field is None else axes @ field for field in (self.diffracted, self.tuned))
-        return Flow(axes @ self.velocity, axes @ self.acceleration, self.pressure, *extra)
+        gradient = None if self.gradient is None else jnp.einsum("ia,abn,jb->ijn", axes, self.gradient, axes)
+        return Flow(axes @ self.velocity, axes @ self.acceleration, self.pressure, *extra, gradient=gradient)
 
 
 class StripFlow(eqx.Module):

@@ -95,8 +95,14 @@ class IrregularSea(AbstractSea):
         """Whether all components travel one way; not of a traced sea."""
         return float(np.ptp(np.asarray(self.components.heading))) <= ONE_HEADING
 
-    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
-        return self.direct().flow(time, points, cylinders)
+    def flow(
+        self,
+        time: Float[Array, ""],
+        points: Float[Array, "3 n"],
+        cylinders: Cylinders | None = None,
+        gradient: bool = False,
+    ) -> Flow:
+        return self.direct().flow(time, points, cylinders, gradient)
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
         return self.direct().elevation(time, points)

@@ -33,13 +33,20 @@ class AbstractSea(eqx.Module):
     """
 
     @abc.abstractmethod
-    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow | None:
+    def flow(
+        self,
+        time: Float[Array, ""],
+        points: Float[Array, "3 n"],
+        cylinders: Cylinders | None = None,
+        gradient: bool = False,
+    ) -> Flow | None:
         """Water velocity, acceleration and pressure at points.
 
         Args:
             time: Time (s).
             points: Positions (m), (3, n).
             cylinders: Which points diffract the waves.
+            gradient: Whether the slopes of the velocity are computed too (`Flow.gradient`).
 
         Returns:
             The flow; None: still water everywhere, at no cost.
@@ -96,7 +103,13 @@ class AbstractSea(eqx.Module):
 class StillWater(AbstractSea):
     """Still water: no waves and no current."""
 
-    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> None:
+    def flow(
+        self,
+        time: Float[Array, ""],
+        points: Float[Array, "3 n"],
+        cylinders: Cylinders | None = None,
+        gradient: bool = False,
+    ) -> None:
         return None
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> None:
@@ -141,19 +154,21 @@ class WaveSea(AbstractSea):
         """Raise UnknownName for another stretching."""
         check(stretching=(self.stretching, get_args(Stretching)))
 
-    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
+    def flow(
+        self,
+        time: Float[Array, ""],
+        points: Float[Array, "3 n"],
+        cylinders: Cylinders | None = None,
+        gradient: bool = False,
+    ) -> Flow:
         level, above = self.levels(time, points)
-        found = self._of(self.waves, time, points, level, above, cylinders)
+        found = self._of(self.waves, time, points, level, above, cylinders, gradient)
         if self.bound is None:
             return found
-        other = self._of(self.bound, time, points, level, above, cylinders)
+        other = self._of(self.bound, time, points, level, above, cylinders, gradient)
         if cylinders is not None and not cylinders.bound:
-            other = Flow(
-                other.velocity,
-                other.acceleration,
-                other.pressure,
-                *(None if x is None else jnp.zeros_like(x) for x in (other.diffracted, other.tuned)),
-            )
+            diffracted, tuned = (None if x is None else jnp.zeros_like(x) for x in (other.diffracted, other.tuned))
+            other = dataclasses.replace(other, diffracted=diffracted, tuned=tuned)
         return jax.tree.map(jnp.add, found, other)
 
     def levels(
@@ -162,10 +177,10 @@ class WaveSea(AbstractSea):
         """Levels at which the profiles of the flow are read, as `stretched` gives them."""
         return stretched(self, self.stretching, time, points, self.environment.depth)
 
-    def _of(self, waves: PlaneWaves, time, points, level, above, cylinders: Cylinders | None) -> Flow:
+    def _of(self, waves: PlaneWaves, time, points, level, above, cylinders: Cylinders | None, gradient: bool) -> Flow:
         square = (waves.vector**2).sum(axis=0)
         k = jnp.where(square > 0, jnp.sqrt(jnp.where(square > 0, square, 1.0)), 0.0)
-        c, s = profiles(k[:, None], level, self.environment.depth)
+        c, s = level_profiles = profiles(k[:, None], level, self.environment.depth)
         if above is not None:
             c, s = c + above * k[:, None] * s, s + above * k[:, None] * c
         turn = self.growth(time) * jnp.exp(1j * (waves.omega[:, None] * time - waves.vector.T @ points[:2]))
@@ -175,8 +190,17 @@ class WaveSea(AbstractSea):
         velocity = jnp.concatenate([(horizontal @ along).real, (up @ upward).real[None]])
         acceleration = jnp.concatenate([((rate * horizontal) @ along).real, ((rate * up) @ upward).real[None]])
         pressure = ((waves.omega * waves.potential) @ along).real
+        slopes = None
+        if gradient:  # of the level at which the profiles are read
+            c, s = (turn * profile for profile in level_profiles)
+            across = jnp.einsum("iw,jw,w,wn->ijn", waves.vector, waves.vector, -1j * waves.potential, c).real
+            mixed = ((k * horizontal) @ s).real[:, None]
+            upright = ((1j * k**2 * waves.potential) @ c).real[None, None]
+            slopes = jnp.concatenate(
+                [jnp.concatenate([across, mixed], axis=1), jnp.concatenate([jnp.swapaxes(mixed, 0, 1), upright], axis=1)]
+            )
         if cylinders is None or not cylinders.radius.size:
-            return Flow(velocity, acceleration, pressure)
+            return Flow(velocity, acceleration, pressure, gradient=slopes)
         of, ka = jnp.array(cylinders.of), k * cylinders.radius[:, None]
 
         def excited(factors):
@@ -186,7 +210,8 @@ class WaveSea(AbstractSea):
 
         factors = maccamy_fuchs(ka)
         diffracted = excited(factors if cylinders.lag else jnp.abs(factors))
-        return Flow(velocity, acceleration, pressure, diffracted, excited(long_waves(ka)) if cylinders.ramp else None)
+        tuned = excited(long_waves(ka)) if cylinders.ramp else None
+        return Flow(velocity, acceleration, pressure, diffracted, tuned, gradient=slopes)
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
         every = self.waves if self.bound is None else self.waves + self.bound

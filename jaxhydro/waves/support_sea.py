@@ -11,7 +11,7 @@ from jaxhydro.environment import Environment
 from jaxhydro.waves.envelope import Envelope
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import AbstractSea, Stretching, stretched
-from jaxhydro.waves.supports import field, surface
+from jaxhydro.waves.supports import field, support_slope, surface
 
 INTERPOLATION_STEPS = 8  # steps of a clock between which a sea is interpolated
 
@@ -165,21 +165,35 @@ class SupportSea(AbstractSea):
         late, seen = (one - jax.lax.stop_gradient(one) for one in (self.back.delay, self.back.seen))
         return parts[0] + self.back.share * (parts[1] + late * parts[2] - seen * parts[3])
 
-    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
+    def flow(
+        self,
+        time: Float[Array, ""],
+        points: Float[Array, "3 n"],
+        cylinders: Cylinders | None = None,
+        gradient: bool = False,
+    ) -> Flow:
         sets, k, fade = self._sets(time), self.wavenumber, self.fade
         families = self.families(sets.shape[1])
         even, odd = (sets[:, : 3 + families], sets[:, 3 + families : 5 + 2 * families])
         even, odd = (one.reshape(-1, sets.shape[2]) for one in (even, odd))
+        slopes = sets[:, 0] if gradient else sets[:0, 0]  # of the horizontal velocity, along the waves and upwards
+        tanh = jnp.tile((1 - fade) / (1 + fade), 2)
+        along_waves, upwards = (support_slope(slopes, jnp.tile(k, 2)), slopes * jnp.tile(k, 2) * tanh)
         place = self.along @ points[:2] - self.middle
         level, above = stretched(self, self.stretching, time, points, self.environment.depth)
         if above is None:
-            along, up = field(even, odd, k, place, level, fade)
+            rows = (jnp.concatenate([even, along_waves]), jnp.concatenate([odd, upwards]))
+            along, up = field(*rows, k, place, level, fade)
         else:
-            tanh = jnp.tile((1 - fade) / (1 + fade), 2)
             slope = jnp.tile(k, 2) * tanh
-            along, up = field(
-                jnp.concatenate([even, odd * slope / tanh**2]), jnp.concatenate([odd, even * slope]), k, place, level, fade
+            rows = (
+                jnp.concatenate([even, odd * slope / tanh**2, along_waves]),
+                jnp.concatenate([odd, even * slope, upwards]),
             )
+            along, up = field(*rows, k, place, level, fade)
+        first, other = (one[len(one) - len(slopes) :] for one in (along, up))
+        along, up = (one[: len(one) - len(slopes)] for one in (along, up))
+        if above is not None:
             along, up = along[: len(even)] + above * up[len(odd) :], up[: len(odd)] + above * along[len(even) :]
         along, up = (self._met(one.reshape(len(sets), len(one) // len(sets), one.shape[1])) for one in (along, up))
         if self.apart:
@@ -196,7 +210,11 @@ class SupportSea(AbstractSea):
         axes = jnp.zeros((3, 2)).at[:2, 0].set(self.along).at[2, 1].set(1.0)
         diffracted, tuned = [*excited, None, None][:2]
         velocity, acceleration = (jnp.stack([along[i], up[i]]) for i in (0, 1))
-        return Flow(velocity, acceleration, along[2], diffracted, tuned, axes)
+        changes = None
+        if gradient:  # water is as incompressible along the waves and upwards as it is irrotational
+            stretching, shear = self._met(first), self._met(other)
+            changes = jnp.stack([jnp.stack([stretching, shear]), jnp.stack([shear, -stretching])])
+        return Flow(velocity, acceleration, along[2], diffracted, tuned, axes, changes)
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
         place = self.along @ points - self.middle

@@ -205,8 +205,8 @@ def _field_jvp(primals, tangents):
     cosh, sinh = jax.lax.optimization_barrier(_terms(k, x, z, fade))
     p, q, k, tanh = len(even), len(odd), jnp.concatenate([k, k]), jnp.tile((1 - fade) / (1 + fade), 2)
     # d/dz of cosh/cosh kh is k tanh kh times sinh/sinh kh, and the other way round
-    with_cosh = jnp.concatenate([even, _slope(even, k), odd * (k / tanh)]) @ cosh
-    with_sinh = jnp.concatenate([odd, _slope(odd, k), even * (k * tanh)]) @ sinh
+    with_cosh = jnp.concatenate([even, support_slope(even, k), odd * (k / tanh)]) @ cosh
+    with_sinh = jnp.concatenate([odd, support_slope(odd, k), even * (k * tanh)]) @ sinh
     with_cosh, with_sinh = jax.lax.optimization_barrier((with_cosh, with_sinh))
     d_along = with_cosh[p : 2 * p] * _zeros(d_x) + with_sinh[2 * q :] * _zeros(d_z)
     d_up = with_sinh[q : 2 * q] * _zeros(d_x) + with_cosh[2 * p :] * _zeros(d_z)
@@ -217,7 +217,7 @@ def _field_jvp(primals, tangents):
     return (with_cosh[:p], with_sinh[:q]), (d_along, d_up)
 
 
-def _slope(amplitude: Float[Array, "p 2*r"], k: Float[Array, " 2*r"]) -> Float[Array, "p 2*r"]:
+def support_slope(amplitude: Float[Array, "p 2*r"], k: Float[Array, " 2*r"]) -> Float[Array, "p 2*r"]:
     """Amplitudes of the derivative by x: d/dx cos kx = -k sin kx."""
     real, imaginary = jnp.split(amplitude, 2, axis=-1)
     return jnp.concatenate([imaginary, -real], axis=-1) * k
@@ -239,6 +239,6 @@ def _surface_jvp(primals, tangents):
     amplitude, k, x = primals
     d_amplitude, _, d_x = tangents
     terms = jax.lax.optimization_barrier(jnp.concatenate(cosine_sine(k[:, None] * x)))
-    found = jnp.stack([amplitude, _slope(amplitude, jnp.concatenate([k, k]))]) @ terms
+    found = jnp.stack([amplitude, support_slope(amplitude, jnp.concatenate([k, k]))]) @ terms
     tangent = found[1] * _zeros(d_x)
     return found[0], tangent if isinstance(d_amplitude, SymbolicZero) else tangent + d_amplitude @ terms
