@@ -42,6 +42,7 @@ STATED_SIZES: dict[str, tuple[str, tuple[str, ...]]] = {
     "wave_reflection": ("wave_reflection.*", (SHARE,)),
     "amplitude_dependent_drag": ("amplitude_dependent_drag.*", ("-",)),
     "sea_state_dependent_drag": ("sea_state_dependent_drag.*", (SHARE,)),
+    "slender_body_forces": ("slender_body_forces.*", (SHARE,)),
     "computed_excitation": ("computed_excitation.*", (SHARE,)),
     "computed_radiation": ("computed_radiation.*", (SHARE,)),
     "computed_added_mass": ("computed_added_mass.*", (SHARE,)),

@@ -111,6 +111,14 @@ class _Converter:
         if design.platform.yaw_stiffness:
             platform["stiffness"] = {"C66": design.platform.yaw_stiffness}
             self.tell("platform.yaw_stiffness", TAKEN, "stiffness C66")
+        if design.platform.potSecOrder == 1:
+            platform["second_order_forces"] = "slender_body"
+            meaning = (
+                "second_order_forces: slender_body; RAFT adds Kim and Yue's correction to members with MCF, which is left out"
+            )
+            self.tell("platform.potSecOrder", APPROXIMATED, meaning)
+        elif design.platform.potSecOrder == 2:
+            self.tell("platform.potSecOrder", LEFT_OUT, "second-order forces of a file: name it in drift")
         platform |= self._mooring()
         self._rest()
         return Conversion(platform, tuple(self.items))

@@ -30,6 +30,7 @@ from jaxhydro.loads import (
     EndInertia,
     MooringLines,
     MorisonDrag,
+    SlenderBodyForces,
     Stiffness,
     StripInertia,
     Weight,
@@ -39,7 +40,8 @@ TAKEN, APPROXIMATED, LEFT_OUT = Treatment.TAKEN, Treatment.APPROXIMATED, Treatme
 DESIGN = "design.yaml"
 STRIP = 1.0  # m times the size of the hull, of RAFT's longest strip: RAFT loads each at its middle
 YAW = "C66"
-WRITTEN = (Buoyancy, CatenaryLines, EndInertia, MooringLines, MorisonDrag, Stiffness, StripInertia, Weight)
+WRITTEN = (Buoyancy, CatenaryLines, EndInertia, MooringLines, MorisonDrag, SlenderBodyForces, Stiffness, StripInertia, Weight)
+SECOND_ORDER_BAND = {"min_freq2nd": 0.01, "max_freq2nd": 0.25}  # Hz, at the size of VolturnUS-S
 SETTINGS = {"min_freq": 0.005, "max_freq": 0.4, "XiStart": 0.1, "nIter": 15}
 CASES = {  # an example, which RAFT needs for a run
     "keys": [
@@ -85,6 +87,13 @@ def export_design(source: ExportSource) -> ExportedModel:
         load = [tidy(value) for value in added.load]
         effects.append({"type": "mean_load", "location": [0.0, 0.0, 0.0], "load": load})
     platform: dict[str, Any] = {"potModMaster": 1, "dlsMax": tidy(STRIP * float(source.model.size))}
+    second = [load for load in source.model.loads if isinstance(load, SlenderBodyForces) and float(load.share)]
+    if second:
+        platform |= {"potSecOrder": 1} | {key: tidy(at / float(source.model.pace)) for key, at in SECOND_ORDER_BAND.items()}
+        share = float(second[0].share)
+        what = "" if share == 1.0 else f", a whole share in place of {share:.3g}"
+        text = f"potSecOrder 1{what}. RAFT has the difference frequencies, and leaves out the waves' own rho u^2/2 on ends."
+        added.items.append(ConvertedItem("second_order_forces", APPROXIMATED, text))
     if added.yaw_stiffness:
         platform["yaw_stiffness"] = tidy(added.yaw_stiffness)
     design = {

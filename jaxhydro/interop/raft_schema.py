@@ -51,6 +51,7 @@ class RaftPlatform(Schema):
 
     members: Annotated[tuple[RaftMember, ...], Field(min_length=1)]
     potModMaster: Literal[0, 1, 2, 3] = 0
+    potSecOrder: Literal[0, 1, 2] = 0
     yaw_stiffness: NonNegative = 0.0
     additional_effects: tuple[Effect, ...] = ()
     hydroPath: Text | None = None

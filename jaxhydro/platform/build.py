@@ -31,6 +31,7 @@ from jaxhydro.loads import (
     MorisonDrag,
     QuadraticDamping,
     RotorThrust,
+    SlenderBodyForces,
     Stiffness,
     StripInertia,
     Weight,
@@ -124,6 +125,8 @@ def build(platform: schema.Platform) -> Model:
             EndInertia(_coefficients(platform, "Ca", hull.ends)),
             MorisonDrag(_coefficients(platform, "Cd", hull.elements, hull.ends), coupled=coupled),
         ]
+        if platform.second_order_forces == "slender_body":
+            loads.append(SlenderBodyForces(on_device(1.0)))
     conventions = Conventions(
         platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal
     )

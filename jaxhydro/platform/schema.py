@@ -374,8 +374,8 @@ class SeaStateLaws(Schema):
 class Platform(Consistent):
     """Checked contents of a platform file.
 
-    `wetting`, `drag_speed`, `diffraction`, `directions`, `waves_at` and `centripetal` choose between forms of the strip
-    loads: see `Model` and the loads.
+    `wetting`, `drag_speed`, `diffraction`, `directions`, `waves_at`, `centripetal` and `second_order_forces` choose between
+    forms of the strip loads: see `Model` and the loads.
     """
 
     name: Text
@@ -405,6 +405,7 @@ class Platform(Consistent):
     directions: Literal["body", "earth"] = "body"
     waves_at: Literal["displaced", "mean"] = "displaced"
     centripetal: bool = True
+    second_order_forces: Literal["none", "slender_body"] = "none"
     drag_speed: Literal["vector", "component"] = "vector"
     sea_state_laws: SeaStateLaws | None = None
 

@@ -44,6 +44,7 @@ from jaxhydro.loads import (
     NonlinearHydrostatics,
     QuadraticDamping,
     RadiationMemory,
+    SlenderBodyForces,
     StaticForce,
     Stiffness,
     StripInertia,
@@ -222,7 +223,7 @@ def in_water(model: jh.Model) -> jh.Model:
     ]
     drag = [MorisonDrag({key: COEFFICIENTS[f"Cd_{key[1]}"] for key in keys}, law) for keys, law in laws.items()]
     others = (CoveredEnds, Current, CurrentProfile, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
-    computed = (DriftTransfer(TRANSFER), ComputedExcitation(EXCITATION), ComputedAddedMass(jnp.eye(6)))
+    computed = (DriftTransfer(TRANSFER), ComputedExcitation(EXCITATION), ComputedAddedMass(jnp.eye(6)), SlenderBodyForces())
     drift = (
         CoupledDamping({"B15": 0.0}),
         CoupledStiffness({"C15": 0.0}),

@@ -24,7 +24,15 @@ WATER = jh.Environment(RHO, 200.0, G)
 BODY = {"mass": 8e6, "centre_of_mass": [0, 0, -8], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}}
 SUBMERGED = (
     {"name": "tower", "group": "column", "shape": "circ", "d": 9.0, "rA": [2, 1, -60], "rB": [5, -3, -30]},
-    {"name": "cone", "group": "column", "shape": "circ", "stations": [0, 1], "d": [8.0, 4.0], "rA": [-12, 1, -60], "rB": [-10, 3, -30]},
+    {
+        "name": "cone",
+        "group": "column",
+        "shape": "circ",
+        "stations": [0, 1],
+        "d": [8.0, 4.0],
+        "rA": [-12, 1, -60],
+        "rB": [-10, 3, -30],
+    },
     {"name": "beam", "group": "pontoon", "shape": "rect", "d": [9.0, 5.0], "rA": [4, 2, -55], "rB": [45, 12, -52]},
 )
 
@@ -65,9 +73,7 @@ def test_kirchhoff(which: tuple[int, ...]) -> None:
         force, added = wrench(model, np.zeros(6), velocity, jh.StillWater())
         linear, spin = velocity[:3], velocity[3:]
         momentum = added @ velocity
-        expected = -jnp.concatenate(
-            [cross(spin, momentum[:3]), cross(spin, momentum[3:]) + cross(linear, momentum[:3])]
-        )
+        expected = -jnp.concatenate([cross(spin, momentum[:3]), cross(spin, momentum[3:]) + cross(linear, momentum[:3])])
         # the added mass takes the acceleration of the point, which has omega x v beyond the rate of v in body axes
         expected = expected + added @ jnp.concatenate([cross(spin, linear), jnp.zeros(3)])
         assert_allclose(force, expected, atol=1e-9 * float(jnp.abs(expected).max()))
@@ -125,7 +131,7 @@ def test_gradient_of_the_velocity(name: str) -> None:
 
 
 def test_pressure_on_a_closed_body() -> None:
-    """Without added mass, and thin against the waves, the forces are the undisturbed pressure -rho (dphi/dt + v²/2) on its surface.
+    """Without added mass, the forces on a thin body are the undisturbed pressure -rho (dphi/dt + v²/2) on its surface.
 
     Its integral is that of -grad p over the volume, here by Gauss quadrature over the box. The strips' own part, dphi/dt, is
     compared as well.
@@ -185,9 +191,7 @@ def test_computed_excitation_takes_them_away() -> None:
         )
         waves = whole.through(sea)
         velocity = np.array([0.3, -0.2, 0.4, 0.01, 0.02, -0.01])
-        found.append(
-            wrench(whole, np.zeros(6), velocity, waves, 3.0)[0] - wrench(plain, np.zeros(6), velocity, waves, 3.0)[0]
-        )
+        found.append(wrench(whole, np.zeros(6), velocity, waves, 3.0)[0] - wrench(plain, np.zeros(6), velocity, waves, 3.0)[0])
     assert np.abs(found[0]).max() > 1e4
     assert_allclose(found[1], 0.0, atol=1e-9 * float(np.abs(found[0]).max()))
 

@@ -30,6 +30,7 @@ from jaxhydro.loads import (
     NonlinearHydrostatics,
     QuadraticDamping,
     RadiationMemory,
+    SlenderBodyForces,
     StaticForce,
     Stiffness,
     Umbilical,
@@ -148,6 +149,7 @@ OPTIONAL_EFFECTS: tuple[Callable[[Model], AbstractEffect], ...] = (
     lambda model: WaveReflection(),
     lambda model: CoveredEnds(),
     _wave_excitation,
+    lambda model: SlenderBodyForces(),
 )
 """Effects that a model may lack, at neutral values, with every parameter that they can have."""
 

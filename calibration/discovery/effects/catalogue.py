@@ -18,6 +18,7 @@ from jaxhydro.loads import (
     CoupledDamping,
     CoupledStiffness,
     MassError,
+    SlenderBodyForces,
     Umbilical,
     WaveExcitation,
 )
@@ -166,6 +167,15 @@ def _of_strips(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
             grid=tuple({cutoff: frequency / builder.time} for frequency in SLOW_MOTION_CUTOFFS),
             telling="a decay in surge in still water against one in waves",
             source="OpenFAST HydroDyn, pull request 2895",
+        )
+    if waves and model.hull.elements.labels:
+        builder.add(
+            "slender_body_forces",
+            None,
+            [builder.add_linear("slender_body_forces.share", NOTICEABLE_SHARE)],
+            passive=True,
+            telling="the same irregular sea at another height: slow forces go as Hs^2",
+            source=SlenderBodyForces.source,
         )
     pressed = sorted(label.replace(".Ca_", ".Cp_") for label in model.values if ".Ca_" in label)
     if waves and pressed:

@@ -15,6 +15,7 @@ EFFECT_NAMES = {
     "wave_gauge_position": "a wrong wave gauge position",
     "wave_reflection": "waves that come back",
     "wave_excitation": "another wave excitation",
+    "slender_body_forces": "second-order forces on members",
     "potential_flow": "what the platform's tables of potential flow have",
 }
 

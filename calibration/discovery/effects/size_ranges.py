@@ -114,6 +114,9 @@ SHARE_OF_TABLE = (
     + "none of a program's forces, or all of them. Basins agree with programs within 10 % in excitation and added mass, "
     "20 % in radiation and 30 % in drift (one standard deviation)."
 )
+SHARE_OF_THEORY = (
+    JUDGEMENT + "none of the theory's forces, or all of them, within 15 % (one standard deviation) as members shade each other."
+)
 PRESSURE = JUDGEMENT + "shading and diffraction change the Froude-Krylov force of slender members by 40 % at most."
 
 RANGES: dict[str, Rule] = {
@@ -165,6 +168,7 @@ RANGES: dict[str, Rule] = {
         -1.0, 0.0, ref.unity, "OpenFAST HydroDyn, pull request 2895: drag on slow motion is scaled between none and all of it."
     ),
     "wave_excitation.*": _share(-0.4, 0.4, ref.unity, PRESSURE),
+    "slender_body_forces.share": lambda case, label: Reach(0.0, 1.3, 1.0, SHARE_OF_THEORY, 1.0, 0.15),
     "computed_excitation.share": _table(0.1),
     "computed_radiation.share": _table(0.2),
     "computed_added_mass.share": _table(0.1),
