@@ -23,7 +23,7 @@ from calibration.residuals.decays import first_guess
 
 MAX_ITERATIONS = 50  # iterations of a full refit
 MAX_RELINEARISATIONS = 8  # new slopes in a full refit
-REFIT_TOLERANCE = 3e-3  # of the cost: a step of a full refit that gains less ends it
+REFIT_TOLERANCE = 3e-4  # of the cost: a step of a full refit that gains less ends it
 
 
 class ReportStage(Protocol):
