@@ -191,7 +191,7 @@ class SupportSea(AbstractSea):
                 jnp.concatenate([odd, even * slope, upwards]),
             )
             along, up = field(*rows, k, place, level, fade)
-        first, other = (one[len(one) - len(slopes) :] for one in (along, up))
+        changes = [one[len(one) - len(slopes) :] for one in (along, up)]
         along, up = (one[: len(one) - len(slopes)] for one in (along, up))
         if above is not None:
             along, up = along[: len(even)] + above * up[len(odd) :], up[: len(odd)] + above * along[len(even) :]
@@ -210,11 +210,11 @@ class SupportSea(AbstractSea):
         axes = jnp.zeros((3, 2)).at[:2, 0].set(self.along).at[2, 1].set(1.0)
         diffracted, tuned = [*excited, None, None][:2]
         velocity, acceleration = (jnp.stack([along[i], up[i]]) for i in (0, 1))
-        changes = None
-        if gradient:  # water is as incompressible along the waves and upwards as it is irrotational
-            stretching, shear = self._met(first), self._met(other)
-            changes = jnp.stack([jnp.stack([stretching, shear]), jnp.stack([shear, -stretching])])
-        return Flow(velocity, acceleration, along[2], diffracted, tuned, axes, changes)
+        slope = None
+        if gradient:  # the flow has no divergence and no rotation
+            stretching, shear = map(self._met, changes)
+            slope = jnp.stack([jnp.stack([stretching, shear]), jnp.stack([shear, -stretching])])
+        return Flow(velocity, acceleration, along[2], diffracted, tuned, axes, slope)
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
         place = self.along @ points - self.middle
