@@ -15,6 +15,12 @@ MOTIONS = ("surge", "heave", "pitch")
 TABLES = ("excitation: {file: semi.3}", "drift: {file: semi.12d}")
 VARIANTS = {
     "strips": (),
+    "strips, second-order forces": ("second_order_forces: slender_body",),
+    "tables around strips": (
+        "radiation: {file: semi.1, added_mass: file}",
+        "excitation: {file: semi.3, second_order: strips}",
+        "second_order_forces: slender_body",
+    ),
     "tables, added mass of members": ("radiation: {file: semi.1}", *TABLES),
     "tables, added mass of the table": ("radiation: {file: semi.1, added_mass: file}", *TABLES),
 }

@@ -46,6 +46,7 @@ STATED_SIZES: dict[str, tuple[str, tuple[str, ...]]] = {
     "computed_excitation": ("computed_excitation.*", (SHARE,)),
     "computed_radiation": ("computed_radiation.*", (SHARE,)),
     "computed_added_mass": ("computed_added_mass.*", (SHARE,)),
+    "diffraction_correction": ("diffraction_correction.*", (SHARE,)),
     "drift_transfer": ("drift_transfer.*", (SHARE,)),
 }
 """Short keys: the labels that each is about, and the units that it may have."""

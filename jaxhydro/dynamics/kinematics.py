@@ -10,6 +10,7 @@ from jaxhydro.dynamics.conventions import Conventions
 from jaxhydro.environment import Environment
 from jaxhydro.hull.hull import Hull, Wetted
 from jaxhydro.hull.submerged import EndShape, Lines, StripShape
+from jaxhydro.loads.forces_at_rest import ForcesAtRest
 from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.slender_flow import SlenderFlow, slender_flow
 from jaxhydro.rotations import rotation, turned
@@ -49,6 +50,9 @@ def instant(
     replaced: Float[Array, ""] | None = None,
     fast_displacement: Float[Array, "2"] | None = None,
     second_order: Float[Array, ""] | None = None,
+    excited: bool = False,
+    mass_replaced: bool = False,
+    forces_at_rest: Callable[[Float[Array, " k"] | None], ForcesAtRest | None] = lambda _: None,
 ) -> Instant:
     """Motion, submerged geometry and flow at an instant.
 
@@ -65,6 +69,10 @@ def instant(
         replaced: Fraction of the strips' inertial wave load that other loads replace.
         fast_displacement: Part of the horizontal displacement (m) that those other loads do not follow.
         second_order: Fraction of the second-order forces on slender members that strips and ends have.
+
+        excited: Whether any load needs the sea's computed excitation.
+        mass_replaced: Whether other loads replace added mass of strips and ends.
+        forces_at_rest: First-order forces at rest that strips and ends do not keep, from that excitation.
 
     Returns:
         What the loads read.
@@ -96,6 +104,7 @@ def instant(
         at_rest = rest.covered * shape * rest.extent[0] * rest.extent[1]
         added_mass_volume = added_mass_volume + replaced * (at_rest - added_mass_volume)
     slow = position if fast_displacement is None else position.at[:2].add(-fast_displacement)
+    excitation = sea.excitation(time, _origin(slow, matrix, conventions)[0]) if excited else None
     return Instant(
         time,
         position,
@@ -112,7 +121,9 @@ def instant(
         end_flow,
         lines,
         sea.drift(time),
-        None if replaced is None else sea.excitation(time, _origin(slow, matrix, conventions)[0]),
+        excitation,
+        forces_at_rest(excitation),
+        _wetted_at_rest(hull).elements if mass_replaced and replaced is None else None,
         slender,
         _lid(flow, matrix, hull),
     )

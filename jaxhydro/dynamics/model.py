@@ -18,6 +18,7 @@ from jaxhydro.dynamics.state import State, body_velocity, position_rate
 from jaxhydro.environment import Environment
 from jaxhydro.hull.hull import Hull
 from jaxhydro.loads.base import AbstractLoad
+from jaxhydro.loads.forces_at_rest import ForcesAtRest
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import AbstractEffect, Parameter, strongly_typed
 from jaxhydro.remarks import Remark
@@ -267,11 +268,18 @@ class Model(eqx.Module):
             cylinders=self.cylinders,
             current=self.current,
             replaced=optional_sum([load.replaces() for load in self.loads]),
+            excited=self.excitation is not None,
+            mass_replaced=any(load.replaces_added_mass() is not None for load in self.loads),
+            forces_at_rest=self._forces_at_rest,
             second_order=optional_sum([load.second_order_share() for load in self.loads]),
             fast_displacement=optional_sum(
                 [load.fast_displacement(of) for load, of in zip(self.loads, state.memory, strict=True)]
             ),
         )
+
+    def _forces_at_rest(self, excitation: Float[Array, " k"] | None) -> ForcesAtRest | None:
+        """First-order forces at rest that strips and ends do not keep, or None; ValueError for two."""
+        return at_most_one("correction of diffraction", [load.forces_at_rest(excitation) for load in self.loads])
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> LoadSum:
         """Sum of all loads in body axes, at an instant and with the memory of each load."""

@@ -52,13 +52,17 @@ def sum_of_loads(loads: Sequence[AbstractLoad], now: Instant, memory: tuple[Any,
         force = force + jnp.concatenate([earth[:3] @ now.rotation, earth[3:] @ now.rotation])
     hull, on_strips, on_ends = now.hull, jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
     per_volume, end_mass = total("element_mass", jnp.zeros((2, len(hull.elements.length)))), total("end_mass", on_ends)
+    added = total("added_mass", jnp.zeros((6, 6)))
     if (replaced := optional_sum([load.replaces_added_mass() for load in loads])) is not None:
-        per_volume, end_mass = (1 - replaced) * per_volume, (1 - replaced) * end_mass
+        if now.part_at_rest is None:
+            per_volume, end_mass = (1 - replaced) * per_volume, (1 - replaced) * end_mass
+        else:
+            added = added - replaced * (hull.moments @ hull.masses(per_volume, end_mass, now.part_at_rest))
     line_mass = hull.join(now.over_strips(per_volume) * now.added_mass_volume, end_mass)
     on_lines = hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward
     return LoadSum(
         force + hull.wrench(on_lines, now.lines.away),
-        total("added_mass", jnp.zeros((6, 6))),
+        added,
         hull.masses(per_volume, end_mass, now.added_mass_part),
         hull.moments,
         tuple(action.memory_rate for action in actions),

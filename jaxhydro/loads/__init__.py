@@ -15,6 +15,7 @@ from jaxhydro.loads.coupled_damping import CoupledDamping
 from jaxhydro.loads.coupled_stiffness import CoupledStiffness
 from jaxhydro.loads.covered_ends import CoveredEnds
 from jaxhydro.loads.cubic_damping import CubicDamping
+from jaxhydro.loads.diffraction_correction import DiffractionCorrection
 from jaxhydro.loads.drag.morison_drag import MorisonDrag
 from jaxhydro.loads.drift_transfer import DriftTransfer
 from jaxhydro.loads.end_inertia import EndInertia
@@ -77,6 +78,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "mass_error": MassError,
     "static_force": StaticForce,
     "computed_excitation": ComputedExcitation,
+    "diffraction_correction": DiffractionCorrection,
     "wave_drift": WaveDrift,
     "drift_transfer": DriftTransfer,
     "wave_drift_damping": WaveDriftDamping,

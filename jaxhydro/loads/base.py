@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
+from jaxhydro.loads.forces_at_rest import ForcesAtRest
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import AbstractEffect
 from jaxhydro.waves.directional_transfer import AnyTransfer
@@ -93,6 +94,14 @@ class AbstractLoad(AbstractEffect):
 
     def replaces_added_mass(self) -> Float[Array, ""] | None:
         """Fraction of the added mass of strips and ends that this load replaces (0 to 1), or None."""
+        return None
+
+    def forces_at_rest(self, excitation: Float[Array, " k"] | None) -> ForcesAtRest | None:
+        """First-order forces at rest that strips and ends do not keep, or None.
+
+        Args:
+            excitation: The sea's value of `excitation_table` at the instant; None in still water.
+        """
         return None
 
     def second_order_share(self) -> Float[Array, ""] | None:

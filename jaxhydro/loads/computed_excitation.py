@@ -1,18 +1,15 @@
 """First-order wave forces from a radiation-diffraction program, in place of the strips'."""
 
-import math
 from typing import Any, ClassVar
 
 import equinox as eqx
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
+from jaxhydro.loads.slow_displacement import CORNER, memory_at_rest, memory_rate
 from jaxhydro.parameters import parameter
 from jaxhydro.waves.excitation import AnyExcitation
-
-CORNER = 2 * math.pi * 0.02  # rad/s, at the size of VolturnUS-S: between slow surge and the longest waves
 
 
 class ComputedExcitation(AbstractLoad):
@@ -25,10 +22,7 @@ class ComputedExcitation(AbstractLoad):
     x is where the platform is horizontally, its motion in the waves left out (`waves_at` of `Model`, "displaced"); at the
     origin with "mean". A force that follows the motion in the waves has a second-order part, which is in the quadratic
     transfer function, too: here it would count twice (Faltinsen 1990, chapter 5; OpenFAST HydroDyn, ExctnDisp 2). So the
-    displacement passes a low-pass filter of second order (Butterworth, corner frequency c): with u the velocity, y the part
-    that is left out and z' the velocity of the rest,
-
-        dy/dt = u - z',  dz'/dt = c^2 y - sqrt(2) c z'.
+    displacement passes a low-pass filter (`slow_displacement`).
 
     s is a share: 1 for the program's own excitation, with drag alone left to the strips, as OpenFAST HydroDyn has a
     potential-flow body; 0 for that of the strips. What the program leaves out the strips then leave out with it: wetting,
@@ -36,7 +30,7 @@ class ComputedExcitation(AbstractLoad):
     share s of it is that of the hull wet at rest: what wetting by waves does is in the quadratic transfer function. Of waves
     that are sent back (`WaveReflection`) the strips alone know. An irregular sea has to be prepared with `Model.excitation`.
 
-    `corner` is c (rad/s).
+    `corner` is the filter's corner frequency (rad/s). `DiffractionCorrection` leaves the strips their second-order forces.
     """
 
     excitation: AnyExcitation
@@ -51,7 +45,7 @@ class ComputedExcitation(AbstractLoad):
         return "excitation", float(self.excitation.omega[0]), float(self.excitation.omega[-1])
 
     def rest(self) -> Float[Array, "2 2"]:
-        return jnp.zeros((2, 2))
+        return memory_at_rest()
 
     def fast_displacement(self, memory: Float[Array, "2 2"]) -> Float[Array, "2"]:
         return memory[0]
@@ -60,9 +54,7 @@ class ComputedExcitation(AbstractLoad):
         return self.share
 
     def act(self, now: Instant, memory: Any) -> Action:
-        fast, slow_velocity = memory
-        turning = self.corner * (self.corner * fast - math.sqrt(2) * slow_velocity)
-        rate = jnp.stack([now.earth_velocity()[:2] - slow_velocity, turning])
+        rate = memory_rate(memory, now.earth_velocity()[:2], self.corner)
         if now.end_flow.pressure is None:
             return Action(memory_rate=rate)
         if now.excitation is None:

@@ -6,6 +6,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.forces_at_rest import COVERED, taken_off
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import parameter
 
@@ -32,4 +33,5 @@ class CoveredEnds(AbstractLoad):
             return Action()
         area = jnp.where(ends.radius > 0, 0.0, ends.area)  # 0 on the faces of tapered pontoons
         pressure = now.environment.density * flow.pressure * area * ends.outward * flow.wet
-        return Action(end_force=self.share * pressure)
+        off = None if now.at_rest is None else taken_off({COVERED: self.share}, now.at_rest.covered_ends)
+        return Action(off, end_force=self.share * pressure)

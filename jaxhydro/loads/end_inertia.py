@@ -4,6 +4,7 @@ from typing import Any, ClassVar
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.coefficients import PerGroup, by_group, spread_ends
+from jaxhydro.loads.forces_at_rest import taken_off
 from jaxhydro.loads.instant import Instant
 
 MEANING = "axial added-mass coefficient of the ends of {group}, on half a sphere"
@@ -31,4 +32,5 @@ class EndInertia(AbstractLoad):
         assert flow.pressure is not None
         pressure = -density * flow.pressure * now.end_shape.area * ends.outward * flow.wet
         lid = None if now.hull.leaning is None else now.hull.leaning.act(now)
-        return Action(end_force=mass * flow.acceleration + pressure, end_mass=mass, body_force=lid)
+        off = None if now.at_rest is None else taken_off(self.Ca, now.at_rest.ends)
+        return Action(off, end_force=mass * flow.acceleration + pressure, end_mass=mass, body_force=lid)

@@ -7,6 +7,7 @@ from jaxtyping import Array, Bool, Float
 from jaxhydro.environment import Environment
 from jaxhydro.hull.hull import Hull, Wetted
 from jaxhydro.hull.submerged import EndShape, Lines, StripShape
+from jaxhydro.loads.forces_at_rest import ForcesAtRest
 from jaxhydro.loads.slender_flow import SlenderFlow
 from jaxhydro.waves.flow import EndFlow, StripFlow
 
@@ -27,13 +28,16 @@ class Instant(eqx.Module):
         added_mass_part: Part of each load element that has added mass: the submerged one; where computed wave forces replace
             those of strips, the one that is wet at rest.
         added_mass_volume: Volume (m³) of that part by strip, (n,).
+        part_at_rest: Part of each load element that is wet at rest, where a table's added mass takes the place of its added
+            mass alone and strips keep what changing wetting does; else None.
         strip_shape: Submerged part of each strip.
         end_shape: Areas of ends and faces.
         strip_flow: Flow past each strip.
         end_flow: Flow past each end and face.
         lines: Distances and centripetal accelerations of strips and ends.
         drift: Squared wave envelopes (m²) of `AbstractSea.drift`, or None.
-        excitation: First-order force (N, N m) of `AbstractSea.excitation`, or None.
+        excitation: First-order forces (N, N m) of `AbstractSea.excitation`, or None.
+        at_rest: First-order forces at rest that strips and ends do not keep, or None.
         slender: Flow past slender members to second order, or None.
         lid: Pressure over density (m²/s²) and acceleration (m/s², body axes) of the water at the points of `Hull.leaning`.
     """
@@ -53,7 +57,9 @@ class Instant(eqx.Module):
     end_flow: EndFlow
     lines: Lines
     drift: Float[Array, " d"] | None = None
-    excitation: Float[Array, "6"] | None = None
+    excitation: Float[Array, " k"] | None = None
+    at_rest: ForcesAtRest | None = None
+    part_at_rest: Wetted | None = None
     slender: SlenderFlow | None = None
     lid: tuple[Float[Array, " k"], Float[Array, "3 k"]] | None = None
 

@@ -7,6 +7,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.coefficients import PerGroup, by_group, spread
+from jaxhydro.loads.forces_at_rest import taken_off
 from jaxhydro.loads.instant import Instant
 
 MEANING = "{way} added-mass coefficient of {group}, on displaced volume"
@@ -35,6 +36,7 @@ class StripInertia(AbstractLoad):
         flow = now.strip_flow
         mass = now.environment.density * spread(now.hull.elements, self.Ca, "Ca")
         second, at_ends, on_body = self._second_order(now, mass)
+        off = None if now.at_rest is None else taken_off(self.Ca, now.at_rest.strips)
         if flow.acceleration is None:
             return Action(strip_force=second, element_mass=mass, end_force=at_ends, body_force=on_body)
         density, volume = now.environment.density, now.strip_shape.volume
@@ -43,11 +45,11 @@ class StripInertia(AbstractLoad):
             lid, moment = lid + second, on_body if moment is None else moment + on_body
         if flow.diffracted is None:
             force = now.over_strips(density + mass) * volume * flow.acceleration
-            return Action(strip_force=force + lid, element_mass=mass, body_force=moment, end_force=at_ends)
+            return Action(off, moment, strip_force=force + lid, element_mass=mass, end_force=at_ends)
         force = jnp.where(now.diffracting(), density * flow.diffracted, now.over_strips(density + mass) * flow.acceleration)
         if flow.tuned is not None:
             force = force + now.over_strips(mass - density) * flow.tuned
-        return Action(strip_force=force * volume + lid, element_mass=mass, body_force=moment, end_force=at_ends)
+        return Action(off, moment, strip_force=force * volume + lid, element_mass=mass, end_force=at_ends)
 
     def _second_order(
         self, now: Instant, mass: Float[Array, "2 e"]

@@ -45,6 +45,7 @@ from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.computed_hydrostatics import with_hydrostatics
 from jaxhydro.platform.computed_loads import tables_of
 from jaxhydro.platform.damper_build import damper_loads, damper_mass, damper_remarks
+from jaxhydro.platform.diffraction_correction_build import with_diffraction_correction
 from jaxhydro.platform.drag_laws import DragLaw, plain_drag, with_drag_laws
 from jaxhydro.platform.tension_table_build import tension_table_lines
 from jaxhydro.platform.tension_table_schema import TensionTableMooring
@@ -136,6 +137,8 @@ def build(platform: schema.Platform) -> Model:
         height, velocity = water.current.profile(water.depth)
         flowing = (CurrentProfile(on_device(height), on_device(velocity), on_device(1.0)),)
     model = Model(environment, body, hull, tuple(loads), flowing, conventions=conventions, remarks=all_remarks)
+    if platform.excitation is not None and platform.excitation.second_order == "strips":
+        model = with_diffraction_correction(model)
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model, platform)))
 

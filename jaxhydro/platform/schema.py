@@ -337,13 +337,15 @@ class Excitation(FromFile):
     """First-order wave forces from another program, in place of the strips'.
 
     The file is WAMIT's `.3`, Capytaine's `.nc` or Nemoh's `.tec`, for waves of a `heading` (deg), or of all headings of the
-    file where none is given. `use`: part of the model, or a candidate of `diagnose`.
+    file where none is given. `use`: part of the model, or a candidate of `diagnose`. `second_order`: whether the strips' own
+    second-order forces go with their first-order force, as in a file of drift, or stay (`DiffractionCorrection`).
     """
 
     endings = {".3": "wamit", ".nc": "capytaine", ".tec": "nemoh"}
 
     by: By = "period"
     heading: Number | None = None
+    second_order: Literal["file", "strips"] = "file"
     use: Literal["load", "candidate"] = "load"
 
 
@@ -430,6 +432,12 @@ class Platform(Consistent):
                     yield Problem(f"members[{i}].{end}", f"a point above the sea bed, z = {bed:g} m", f"z = {z:g} m")
         if isinstance(self.mooring, Catenary):
             yield from self.mooring.water_faults(self.water.density, self.water.depth, self.water.gravity)
+        if self.excitation is not None and self.excitation.second_order == "strips":
+            if not self.members:
+                yield Problem("excitation.second_order", "`file`, as the platform has no members", "strips")
+            if self.drift is not None:
+                expected = "no table of drift beside `second_order: strips`, or `second_order: file`"
+                yield Problem("excitation.second_order", expected, "strips and a key `drift`")
         yield from twice_named("guided_masses", self.guided_masses)
         yield from twice_named("tuned_mass_dampers", self.tuned_mass_dampers)
         yield from twice_named("liquid_column_dampers", self.liquid_column_dampers)

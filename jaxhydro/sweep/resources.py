@@ -75,7 +75,7 @@ def bytes_of_run(setup: Setup) -> float:
     period, cylinders = repeat_period(plan.duration), model.cylinders
     steps = fourier_length(period / setup.limit) * plan.duration / period
     radii = 0 if cylinders is None else cylinders.radius.size * (2 if cylinders.ramp else 1)
-    rows = 6 + 2 * radii + (0 if model.excitation is None else 6)
+    rows = 6 + 2 * radii + (0 if (table := model.excitation) is None else len(table.at(jnp.ones(1), jnp.zeros(1))))
     complex_numbers = MEMORY_COPIES * steps + 3 * plan.order * plan.cutoff * period
     return complex_numbers * rows * supports_of(setup) * 16 + len(setup.times) * 50 * 8
 

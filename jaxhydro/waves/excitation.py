@@ -21,7 +21,8 @@ class Excitation(eqx.Module):
 
     Attributes:
         omega: Angular frequencies (rad/s), ascending, (n,).
-        force: X of surge, sway, heave (N/m), roll, pitch, yaw (N m/m) about the reference point, earth axes, (6, n).
+        force: X of surge, sway, heave (N/m), roll, pitch, yaw (N m/m) about the reference point, earth axes, (6, n); of
+            several tables one after the other, (6 m, n).
 
     References:
         Newman (1977), Marine Hydrodynamics, section 6.15; Faltinsen (1990), Sea Loads on Ships and Offshore Structures,
@@ -29,21 +30,22 @@ class Excitation(eqx.Module):
     """
 
     omega: Float[Array, " n"]
-    force: Complex[Array, "6 n"]
+    force: Complex[Array, "k n"]
 
     @classmethod
-    def of(cls, omega: Float[np.ndarray, " n"], force: Complex[np.ndarray, "6 n"]) -> Self:
+    def of(cls, omega: Float[np.ndarray, " n"], force: Complex[np.ndarray, "k n"]) -> Self:
         """Excitation from a table.
 
         Args:
             omega: Angular frequencies (rad/s), (n,).
-            force: Forces per wave amplitude (N/m, N m/m), (6, n).
+            force: Forces per wave amplitude (N/m, N m/m), (6, n) or (6 m, n).
 
         Raises:
             ValueError: Fewer than two frequencies, or frequencies that do not ascend.
         """
         omega, force = np.asarray(omega, float), np.asarray(force, complex)
-        if omega.ndim != 1 or force.shape != (6, omega.size) or omega.size < 2 or not (np.diff(omega) > 0).all():
+        rows = len(force) if force.ndim == 2 and len(force) % 6 == 0 else 6
+        if omega.ndim != 1 or force.shape != (rows, omega.size) or omega.size < 2 or not (np.diff(omega) > 0).all():
             raise ValueError(f"two ascending frequencies or more and six forces of each, found {omega.shape}, {force.shape}")
         return cls(jnp.asarray(omega), jnp.asarray(force))
 

@@ -69,7 +69,7 @@ class Preparation(eqx.Module):
             clock.nodes,
             like.stretching,
             self.half,
-            0 if self.exciting is None else 6,
+            0 if self.exciting is None else len(self.exciting.force),
             envelope(waves, like.environment, self.weight, self.share, self.size, start, self.transfer),
             apart=apart,
         )
@@ -131,7 +131,7 @@ def _spectrum(
     real, imaginary = jnp.split(sum_over_pairs(waves, environment, sums, *pairs), 2, axis=1)
     bound = real + 1j * imaginary
     if exciting is not None:
-        bound = jnp.pad(bound, ((0, 0), (6, 0), (0, 0)))
+        bound = jnp.pad(bound, ((0, 0), (len(exciting.force), 0), (0, 0)))
     return bound.at[first : last + 1].add(found)
 
 

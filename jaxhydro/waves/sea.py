@@ -75,8 +75,10 @@ class AbstractSea(eqx.Module):
         """
         return None
 
-    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
-        """First-order force on a platform (N, N m, earth axes) from a table; None for a sea made without one.
+    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, " k"] | None:
+        """First-order force on a platform (N, N m, earth axes) from a table, (6,); None for a sea made without one.
+
+        Of several tables, the forces are one after the other.
 
         Args:
             time: Time (s).

@@ -68,13 +68,14 @@ def between(place: Float[Array, "..."], total: int) -> tuple[Int[Array, "... h"]
 class SupportSea(AbstractSea):
     """An irregular sea of one heading for one hull and one clock: see `supports` for how it works.
 
-    `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: `forces` (0 or 6) of the
-    first order on a platform; horizontal velocity and acceleration, pressure over density, what cylinders of each radius are
-    excited by horizontally (and `Flow.tuned` for each); vertical velocity and acceleration, and what excites the cylinders
-    vertically; elevation; where bound waves act `apart`, at the origin only, their horizontal velocity and acceleration and
-    what cylinders of each radius are excited by there, the whole platform with them. Only times of the clock may be asked for,
-    but of `drift`, which `envelope` holds. `moved` shifts the box with the sea, and the envelope with the group velocity. Of
-    what comes `back`, nothing does before its delay, and `excitation`, `drift` and what acts `apart` know nothing.
+    `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: `forces` of the first
+    order on a platform (none, six or a multiple); horizontal velocity and acceleration, pressure over density, what cylinders
+    of each radius are excited by horizontally (and `Flow.tuned` for each); vertical velocity and acceleration, and what
+    excites the cylinders vertically; elevation; where bound waves act `apart`, at the origin only, their horizontal velocity
+    and acceleration and what cylinders of each radius are excited by there, the whole platform with them. Only times of the
+    clock may be asked for, but of `drift`, which `envelope` holds. `moved` shifts the box with the sea, and the envelope with
+    the group velocity. Of what comes `back`, nothing does before its delay, and `excitation`, `drift` and what acts `apart`
+    know nothing.
     """
 
     environment: Environment

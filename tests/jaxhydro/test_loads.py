@@ -31,6 +31,7 @@ from jaxhydro.loads import (
     CoupledStiffness,
     CoveredEnds,
     CubicDamping,
+    DiffractionCorrection,
     DriftTransfer,
     EndInertia,
     HiddenOscillator,
@@ -65,6 +66,7 @@ from jaxhydro.loads.drag import (
     SuctionSideLaw,
 )
 from jaxhydro.parameters import AbstractEffect
+from jaxhydro.platform.diffraction_correction_build import with_diffraction_correction
 from jaxhydro.platform.tension_table_build import tension_table
 from jaxhydro.sensors import SENSOR_EFFECTS, SensorLag, SensorReference
 from jaxhydro.water import WATER_EFFECTS, Current, CurrentProfile, WaveGaugePosition, WaveReflection
@@ -310,13 +312,17 @@ SEA = jh.regular_wave(3.0, 9.0, jh.Environment(RHO, 200.0, G), heading=0.4, phas
 
 def test_the_example_has_every_registered_load() -> None:
     """Nothing escapes the contract below."""
-    assert {kind for effect in everything().effects for kind in types(effect)} == {MorisonDrag, *EFFECTS.values()}
+    known = {kind for effect in everything().effects for kind in types(effect)}
+    assert known | {DiffractionCorrection} == {MorisonDrag, *EFFECTS.values()}
 
 
 @pytest.mark.parametrize("name", EFFECTS)
 def test_contract(name: str) -> None:
     """The neutral value is silent in still water, jit = eager, vmap = loop, float64 is kept, parameters within bounds."""
     model = only(everything(), EFFECTS[name])
+    if name == "diffraction_correction":  # a platform has one table of excitation, and the example has it whole
+        model = with_diffraction_correction(only(everything(), StripInertia, EndInertia, ComputedExcitation))
+        model = only(model, DiffractionCorrection)
     (load,) = model.effects
     positions, velocities = sample(1)
     for label, value in load.values.items():

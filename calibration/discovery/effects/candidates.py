@@ -20,6 +20,7 @@ from jaxhydro.loads import (
     CoupledStiffness,
     CoveredEnds,
     CubicDamping,
+    DiffractionCorrection,
     DriftTransfer,
     HiddenOscillator,
     Hysteresis,
@@ -171,6 +172,9 @@ class TableEffect(NamedTuple):
 TABLE_EFFECTS = {
     "computed_excitation": TableEffect(
         ComputedExcitation, True, "the platform held in regular waves of three periods, its forces measured"
+    ),
+    "diffraction_correction": TableEffect(
+        DiffractionCorrection, True, "the platform held in regular waves of three periods, its forces measured"
     ),
     "drift_transfer": TableEffect(DriftTransfer, True, "the same irregular sea at another height: drift goes as Hs^2"),
     "computed_radiation": TableEffect(

@@ -16,6 +16,7 @@ EFFECT_NAMES = {
     "wave_reflection": "waves that come back",
     "wave_excitation": "another wave excitation",
     "slender_body_forces": "second-order forces on members",
+    "diffraction_correction": "first-order wave forces of potential flow",
     "potential_flow": "what the platform's tables of potential flow have",
 }
 

@@ -172,6 +172,7 @@ RANGES: dict[str, Rule] = {
     "computed_excitation.share": _table(0.1),
     "computed_radiation.share": _table(0.2),
     "computed_added_mass.share": _table(0.1),
+    "diffraction_correction.share": _table(0.1),
     "drift_transfer.share": _table(0.3),
 }
 """Rules by pattern of labels; the first that fits counts."""
