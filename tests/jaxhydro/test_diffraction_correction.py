@@ -89,9 +89,9 @@ def test_in_small_waves_it_moves_as_with_the_table() -> None:
     model = jh.load_model("volturnus-s")
     whole = model.with_effect(ComputedExcitation(table(), jnp.asarray(1.0)))
     around = with_diffraction_correction(whole)
-    found = [
-        jh.simulate_irregular(one, 0.1, 9.0, duration=600.0, seed=3, order=1, low=0.06, cutoff=0.2) for one in (whole, around)
-    ]
+    spectrum = jh.spectrum_components(lambda w: jh.jonswap(w, 0.1, 9.0), 600.0, WATER, low=0.06, cutoff=0.2, seed=3)
+    sea, times = jh.IrregularSea(spectrum, WATER), np.arange(0.0, 600.0, 1.0)
+    found = [jh.simulate(one, times, sea) for one in (whole, around)]
     for dof in ("surge", "heave", "pitch"):
         a, b = (np.asarray(one[dof])[len(one[dof]) // 3 :] for one in found)
         assert np.std(a - b) < 0.01 * np.std(a), dof
