@@ -85,11 +85,11 @@ def test_several_headings() -> None:
 
 @pytest.mark.slow
 def test_in_small_waves_it_moves_as_with_the_table() -> None:
-    """An irregular sea of 0.1 m moves both models alike, a prepared sea of first order."""
+    """An irregular sea of 0.01 m moves both models alike, a prepared sea of first order."""
     model = jh.load_model("volturnus-s")
     whole = model.with_effect(ComputedExcitation(table(), jnp.asarray(1.0)))
     around = with_diffraction_correction(whole)
-    spectrum = jh.spectrum_components(lambda w: jh.jonswap(w, 0.1, 9.0), 600.0, WATER, low=0.06, cutoff=0.2, seed=3)
+    spectrum = jh.spectrum_components(lambda w: jh.jonswap(w, 0.01, 9.0), 600.0, WATER, low=0.06, cutoff=0.2, seed=3)
     sea, times = jh.IrregularSea(spectrum, WATER), np.arange(0.0, 600.0, 1.0)
     found = [jh.simulate(one, times, sea) for one in (whole, around)]
     for dof in ("surge", "heave", "pitch"):
