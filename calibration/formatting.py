@@ -57,7 +57,7 @@ def percent(ratio: float | None) -> str:
 
 def signed_percent(ratio: float | None) -> str:
     """A ratio in whole per cent with its sign; a dash for none."""
-    if ratio is None:
+    if ratio is None or math.isnan(ratio):
         return "–"
     if 100 * ratio >= LARGEST_PERCENT:
         return f"> {LARGEST_PERCENT:g} %"

@@ -20,10 +20,12 @@ from calibration.new_campaign.column_guesses import (
     ranges_without_unit,
     values_of,
 )
-from calibration.new_campaign.column_names import motion_in
+from calibration.new_campaign.column_names import channel_of, motion_in
 from calibration.new_campaign.kind_guesses import guess_kind
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.data_files import read_table
+
+_EMPTY_CELL = "Leave the cell empty where nothing was measured, or delete the row."
 
 
 def draft_of_files(
@@ -96,7 +98,7 @@ def _read(files: Sequence[Path]) -> list[pd.DataFrame]:
     errors: list[InputError] = []
     for file in files:
         try:
-            tables.append(read_table(file))
+            tables.append(_with_numbers(file, read_table(file, keep_text=True)))
         except InputError as error:
             errors.append(error)
     if len(errors) == 1:
@@ -105,6 +107,20 @@ def _read(files: Sequence[Path]) -> list[pd.DataFrame]:
         problems = [replace(p, where=f"{error.source}, {p.where}".rstrip(", ")) for error in errors for p in error.problems]
         raise InputError("data files", problems)
     return tables
+
+
+def _with_numbers(file: Path, table: pd.DataFrame) -> pd.DataFrame:
+    """The table. Raises InputError where a column that may be a channel has text among its numbers."""
+    names = [str(name) for name in table.columns]
+    unnamed = names == [str(i) for i in range(len(names))]
+    mistakes = {
+        number: some
+        for number, some in table.attrs.get("not_numbers", {}).items()
+        if unnamed or channel_of(names[number]) is not None
+    }
+    if mistakes:
+        raise InputError(str(file), [replace(one, hint=_EMPTY_CELL) for some in mistakes.values() for one in some])
+    return table
 
 
 def _check_columns(files: Sequence[Path], tables: Sequence[pd.DataFrame], guesses: Sequence[Columns]) -> None:

@@ -40,6 +40,20 @@ def sea(regular: bool) -> pd.DataFrame:
     return pd.DataFrame({"time_s": time, "surge_m": 0.5 * wave, "heave_m": 0.4 * wave, "pitch_deg": wave, "wave_m": wave})
 
 
+def test_text_among_numbers_says_what_to_do(tmp_path):
+    table = record("surge-1")
+    table["operator"] = 1.0
+    table = table.astype(object)
+    table.loc[3, "operator"] = "tea"
+    table.to_csv(tmp_path / "one.csv", index=False)
+    assert campaign(tmp_path / "a", tmp_path / "one.csv").records[0].degree_of_freedom == "surge"
+    table.loc[5, "surge_m"] = "lost"
+    table.to_csv(tmp_path / "two.csv", index=False)
+    with pytest.raises(InputError, match=r"row 7, column surge_m: expected a number, found 'lost'. Leave the cell empty"):
+        campaign(tmp_path / "b", tmp_path / "two.csv")
+    assert not (tmp_path / "b").exists()
+
+
 # --- names of columns
 
 
