@@ -73,8 +73,10 @@ def test_a_band_is_taken_out_without_moving_it(count: int) -> None:
 
 
 def test_white_noise_is_flat() -> None:
-    """Density 2 sigma^2 dt; the scatter of a mean over 6 half-overlapped Hann segments is about 1/sqrt(6 * 36/19 / 2). A seventh
-    makes the segments reach the end of the record."""
+    """Density 2 sigma^2 dt; the scatter of a mean over 6 half-overlapped Hann segments is about 1/sqrt(6 * 36/19 / 2).
+
+    A seventh segment reaches the end of the record.
+    """
     spectrum = power_spectrum(TIMES, NOISE)
     assert spectrum.segments == 7 and spectrum.frequency[1] == pytest.approx(0.001)
     assert spectrum.resolution == pytest.approx(0.0015, rel=1e-3)  # Hann: 1.5 bins
