@@ -19,6 +19,7 @@ from jaxhydro.choices import unknown
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import EquilibriumError, stable_modes
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.files import campaign_file
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import Platform, load_platform
 
@@ -134,7 +135,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     A faulty test marked `ignore` is left out with a warning, unless it is the zero test.
 
     Args:
-        path: Folder of the campaign, or its campaign.yaml.
+        path: Folder of the campaign, its campaign.yaml, or the name of an embedded one: "volturnus-s-decays".
 
     Returns:
         The campaign, with warnings about its data.
@@ -144,7 +145,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
             together, then the records' errors.
     """
     manifest, folder = read_manifest(path)
-    source = str(folder / "campaign.yaml" if Path(path).is_dir() else path)
+    source = str(campaign_file(path))
     problems: list[Problem] = []
     of_platform: InputError | None = None
     try:

@@ -22,8 +22,10 @@ from calibration.new_campaign.column_guesses import (
 )
 from calibration.new_campaign.column_names import channel_of, motion_in
 from calibration.new_campaign.kind_guesses import guess_kind
+from calibration.new_campaign.still_water import common_still_time, still_time
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.data_files import read_table
+from jaxhydro.units import SI
 
 _EMPTY_CELL = "Leave the cell empty where nothing was measured, or delete the row."
 
@@ -63,7 +65,7 @@ def draft_of_files(
         raise InputError("data files", [Problem(file, expected, "none", "Is the unit in the header right?") for file in bare])
     shared = _shared_columns(drafts)
     tests = [replace(test, overrides=_overrides(shared, test)) for test in drafts]
-    return CampaignDraft(name, platform, own_platform, scale, shared, _with_uses(tests), True)
+    return CampaignDraft(name, platform, own_platform, scale, shared, _with_uses(tests), True, common_still_time(tests))
 
 
 def _drafts(
@@ -78,7 +80,9 @@ def _drafts(
         motions = {dof: values[dof] for dof in DOFS if dof in values}
         guess = guess_kind(values["time"], motions, values.get(WAVE), length, motion_in(file.stem))
         id = _id(file.stem, [test.id for test in tests])
-        tests.append(TestDraft(id, file.name, guess, "fit", own, left_out={name: found[name] for name in out}))
+        out_of_range = {name: found[name] for name in out}
+        still = still_time(values["time"] / SI["time"][own["time"].unit], motions, guess.degree_of_freedom)
+        tests.append(TestDraft(id, file.name, guess, "fit", own, left_out=out_of_range, still=still))
     return tests
 
 

@@ -54,6 +54,45 @@ def test_text_among_numbers_says_what_to_do(tmp_path):
     assert not (tmp_path / "b").exists()
 
 
+def test_still_water_before_a_push_is_zero(tmp_path):
+    """A platform that rests off zero for 30 s, and is then pushed: its readings at rest are still water."""
+    time = np.arange(0.0, 150.0, 0.1)
+    moved = np.maximum(time - 30.0, 0.0)
+    table = pd.DataFrame(
+        {"t": time, "x": 7.0 + 0.01 * np.sin(time), "phi": 2.0 - 8 * np.exp(-0.01 * moved) * np.sin(0.6 * moved)}
+    )
+    table.to_csv(tmp_path / "roll.csv", index=False)
+    made = campaign(tmp_path / "made", tmp_path / "roll.csv", platform="ship-section")
+    window = made.manifest.zero.window
+    assert window[0] == 0 and 20 < window[1] < 30
+    record = made.records[0]
+    assert abs(np.mean(record.values["surge"])) < 0.02 and abs(np.mean(record.values["roll"])) < np.radians(0.5)
+    record_of_demo = tmp_path / "surge.csv"
+    shutil.copyfile(DEMO / "surge-1.csv", record_of_demo)  # let go away from rest
+    assert campaign(tmp_path / "other", record_of_demo).manifest.zero is None
+
+
+def test_coefficients_of_the_platform_are_the_examples(tmp_path):
+    init_campaign(tmp_path / "made", "volturnus-s", None, [])
+    text = (tmp_path / "made" / "campaign.yaml").read_text()
+    written = "\n".join(line.removeprefix("# ") for line in text[text.index("# calibrate:") :].splitlines())
+    (tmp_path / "made" / "campaign.yaml").write_text(text[: text.index("# calibrate:")] + written)
+    for dof in ("surge", "heave", "pitch"):
+        shutil.copyfile(DEMO / f"{dof}-1.csv", tmp_path / "made" / f"{dof}-1.csv")
+    fit = read_manifest(tmp_path / "made")[0].calibrate
+    assert set(fit.bounds) == set(fit.priors) == {"column.Ca_t"} and fit.free and fit.fixed
+
+
+def test_an_embedded_campaign_is_found_by_its_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert len(load_campaign("volturnus-s-decays").records) == 9
+    with pytest.raises(InputError, match="no such folder"):
+        load_campaign("volturnus-s-decay")
+    (tmp_path / "volturnus-s-decays").mkdir()
+    with pytest.raises(InputError, match=r"a folder without campaign\.yaml"):  # one's own comes first
+        load_campaign("volturnus-s-decays")
+
+
 # --- names of columns
 
 
