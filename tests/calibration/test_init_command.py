@@ -14,8 +14,10 @@ from test_cli import run
 from calibration.campaign.load_campaign import Campaign, load_campaign
 from calibration.campaign.manifest import read_manifest
 from calibration.commands.init_command import init_campaign
+from calibration.discovery.set_up import set_up_study
 from calibration.new_campaign.column_names import channel_of, motion_in
 from calibration.new_campaign.draft_text import yaml_scalar
+from calibration.residuals.measured_seas import Options
 from jaxhydro.errors import InputError
 
 MEASURED = Path("/work/shared/measured")
@@ -70,6 +72,21 @@ def test_still_water_before_a_push_is_zero(tmp_path):
     record_of_demo = tmp_path / "surge.csv"
     shutil.copyfile(DEMO / "surge-1.csv", record_of_demo)  # let go away from rest
     assert campaign(tmp_path / "other", record_of_demo).manifest.zero is None
+
+
+def test_a_ship_that_nothing_holds_up_can_be_diagnosed(tmp_path):
+    """Its weight is not varied: with more of it there would be no equilibrium."""
+    time = np.arange(0.0, 30.0, 0.05)
+    pd.DataFrame({"t": time, "phi_deg": 8 * np.exp(-0.02 * time) * np.cos(2.5 * time)}).to_csv(tmp_path / "a.csv", index=False)
+    ship = tmp_path / "ship.yaml"
+    ship.write_text(
+        "{name: ship, water: {density: 1000.0, depth: 3.0}, members: [], mooring: {kind: none}, hydrostatics: {C44: 822.0},"
+        "rigid_body: {mass: 994.0, centre_of_mass: [0, 0, -0.03], inertia: {Ixx: 115.7, Iyy: 1376, Izz: 1376}},"
+        "added_mass: {A44: 16.0}, linear_damping: {B44: 5.0}}"
+    )
+    made = campaign(tmp_path / "made", tmp_path / "a.csv", platform=str(ship))
+    labels = set_up_study(made, Options()).study.space.labels
+    assert "mass_properties.inertia_roll" in labels and "mass_properties.mass" not in labels
 
 
 def test_coefficients_of_the_platform_are_the_examples(tmp_path):
