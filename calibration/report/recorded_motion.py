@@ -108,7 +108,7 @@ def _offsets(data: xr.Dataset) -> dict[str, float]:
     """Largest sensor offset of each channel, without those that are zero."""
     if "sensor_offset" not in data:
         return {}
-    largest = np.abs(data["sensor_offset"].fillna(0.0)).max("test")
+    largest = abs(data["sensor_offset"].fillna(0.0)).max("test")
     return {str(name): float(value) for name, value in zip(largest["channel"].values, largest.values) if value > 0}
 
 
