@@ -32,6 +32,11 @@ def with_deviation(value: float, deviation: float | None) -> str:
     return f"({text})·10{_raised(exponent)}" if exponent else text
 
 
+def bracketed(value: float | None) -> str:
+    """A value that is no result, in brackets: `(1.12)`."""
+    return f"({number(value, 3)})"
+
+
 def to_width(value: float, width: float) -> str:
     """A number to the second digit of a width, and at least three digits of its own."""
     if not (value and width > 0 and math.isfinite(value) and math.isfinite(width)):
@@ -57,7 +62,7 @@ def percent(ratio: float | None) -> str:
 
 def signed_percent(ratio: float | None) -> str:
     """A ratio in whole per cent with its sign; a dash for none."""
-    if ratio is None:
+    if ratio is None or math.isnan(ratio):
         return "–"
     if 100 * ratio >= LARGEST_PERCENT:
         return f"> {LARGEST_PERCENT:g} %"

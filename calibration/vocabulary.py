@@ -5,7 +5,7 @@ from collections.abc import Sequence
 Rows = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]
 USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
 KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
-UNDETERMINED = "not determined"
+UNDETERMINED = "not determined"  # behind a value in brackets
 BANDS = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
 LAW_NAMES = {
     "constant": "constant",

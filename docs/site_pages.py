@@ -26,7 +26,7 @@ TOCTREES = {  # of the page before the colon; they are appended to it, so that n
     "guide/index": ("calibrate", "waves", "diagnose", "sweeps", "uncertainty", "python", "convert", "own-effect", "../formats"),
     "reference/index": ("../theory", "../conventions", "../constants", "commands", "python/index", "../glossary"),
     "verified": ("validation", "speed", "discovery-benchmark"),
-    "project": ("contributing", "architecture", "changelog"),
+    "project": ("contributing", "architecture", "comparison", "changelog"),
 }
 SITE_LINKS = {  # in the page of the key; to pages that only the site has
     "reference/index": {"all commands": "commands.md", "all public names of Python": "python/index.rst"},

@@ -25,14 +25,22 @@ def is_there(path: Path) -> bool:
         return False
 
 
+def embedded_campaigns() -> dict[str, Path]:
+    """Folders of the campaigns that come with the package, by name."""
+    folder = Path(__file__).parent / "campaigns"
+    return {one.name: one for one in sorted(folder.iterdir()) if (one / MANIFEST).is_file()}
+
+
 def campaign_file(path: str | os.PathLike[str]) -> Path:
-    """Path of the campaign.yaml in a campaign's folder, or of the file itself.
+    """Path of the campaign.yaml in a campaign's folder, of the file itself, or of an embedded campaign by its name.
 
     Raises:
         InputError: The folder or file does not exist, or the folder has no campaign.yaml.
     """
     path = Path(path)
     expected = f"a campaign's folder, or its {MANIFEST}"
+    if not is_there(path) and (embedded := embedded_campaigns().get(str(path))) is not None:
+        return embedded / MANIFEST
     if not is_there(path):
         found = "no such file" if path.suffix in YAML else "no such folder"
         raise InputError(str(path), [Problem("", expected, found, suggest_path(path))])

@@ -1,5 +1,6 @@
 """Units of files, of stated quantities, and of printed motions (m and degrees)."""
 
+import math
 import re
 from typing import NamedTuple
 
@@ -80,3 +81,9 @@ def split_quantity(text: str) -> tuple[float, str] | None:
     """Number and unit of a text such as "0.3 m" or "2 %"; None where it is no finite number with a unit."""
     found = _QUANTITY.fullmatch(text.strip())
     return (float(found[1]), found[2]) if found and np.isfinite(float(found[1])) else None
+
+
+def rounded_up(value: float, digits: int = 2) -> float:
+    """The next number of so many significant digits: 1385 s become 1400 s."""
+    digit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    return float(f"{math.ceil(value / digit - 1e-9) * digit:.10g}")

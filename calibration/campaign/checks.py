@@ -182,14 +182,14 @@ class _Check:
                 "error",
                 "time",
                 float(time[i]),
-                f"a step back from {self.at(time[i])} to "
-                f"{self.at(time[i + 1])} at sample {self.series.rows[rows[i + 1]] + 1} of the file",
+                f"a step back from {self.at(time[i])} to {self.at(time[i + 1])} in {self.series.row(rows[i + 1])} of the file",
                 "times that increase",
             )
             return
         if same := int(np.sum(steps == 0)):
             i = int(np.argmax(steps == 0))
-            yield self.dropped(same, "time", float(time[i]), f"{same} times that repeat, the first {self.at(time[i])}")
+            place = f"the first {self.at(time[i])} in {self.series.row(rows[i + 1])}"
+            yield self.dropped(same, "time", float(time[i]), f"{same} times that repeat, {place}")
         steps = np.diff(self.time)
         for i in np.flatnonzero(steps > GAP_STEPS * self.step)[:MAX_SHOWN]:
             yield self.finding(
@@ -213,7 +213,8 @@ class _Check:
                 before = self.series.time[: bad[0] + 1]
                 before = before[valid_values(before)]
                 when = float(before[-1]) if len(before) else None
-                place = "at the start" if when is None else f"the first near {self.at(when)}"
+                near = "at the start" if when is None else f"near {self.at(when)}"
+                place = f"the first {near}, {self.series.row(int(bad[0]))}"
                 code = missing_code(values)
                 what = "missing or infinite" if code is None else f"missing, as {code:g} seems to say"
                 yield self.dropped(len(bad), channel, when, f"{len(bad)} values {what}, {place}")

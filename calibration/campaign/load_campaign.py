@@ -14,10 +14,12 @@ from calibration.campaign.plausible import CampaignFinding, check_plausible
 from calibration.campaign.records import Record, read_series, records_of
 from calibration.campaign.table_findings import check_tables, platform_findings
 from calibration.campaign.wave_band import wave_band
+from calibration.formatting import listed
 from jaxhydro.choices import unknown
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.statics import EquilibriumError
+from jaxhydro.dynamics.statics import EquilibriumError, stable_modes
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.files import campaign_file
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import Platform, load_platform
 
@@ -117,13 +119,23 @@ def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]
                 yield Problem(f"tests[{i}].sea.{key}", expected, f"{heading:g} deg")
 
 
+def _missing_restoring(platform: Platform) -> str:
+    """Which restoring a platform without members leaves out, or ""."""
+    if platform.members or platform.hydrostatics is None:
+        return ""
+    given = platform.hydrostatics.model_dump(exclude_defaults=True)
+    left_out = [key for key in ("C44", "C55") if not {key, f"{key}_buoyancy", "file"} & set(given)]
+    verb = "are" if len(left_out) > 1 else "is"
+    return f"Without members, `hydrostatics` states what restores: {listed(left_out)} {verb} left out." if left_out else ""
+
+
 def load_campaign(path: str | PathLike[str]) -> Campaign:
     """Load and check a campaign.
 
     A faulty test marked `ignore` is left out with a warning, unless it is the zero test.
 
     Args:
-        path: Folder of the campaign, or its campaign.yaml.
+        path: Folder of the campaign, its campaign.yaml, or the name of an embedded one: "volturnus-s-decays".
 
     Returns:
         The campaign, with warnings about its data.
@@ -133,7 +145,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
             together, then the records' errors.
     """
     manifest, folder = read_manifest(path)
-    source = str(folder / "campaign.yaml" if Path(path).is_dir() else path)
+    source = str(campaign_file(path))
     problems: list[Problem] = []
     of_platform: InputError | None = None
     try:
@@ -164,9 +176,11 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     campaign = Campaign(manifest, folder, platform, records, findings)
     model = campaign.model
     try:
+        stable_modes(model)
         doubtful = check_plausible(records, model, manifest.zero is not None, manifest.scale)
     except EquilibriumError as error:
-        raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
+        expected, hint = "a platform that floats at rest", _missing_restoring(platform)
+        raise InputError(source, [Problem(manifest.platform, expected, str(error), hint)]) from None
     band = wave_band(manifest, model, records)
     doubtful = (*platform_findings(model, manifest.platform), *check_tables(records, model, band), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:

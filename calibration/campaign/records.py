@@ -43,6 +43,12 @@ class Series:
     still: dict[str, np.ndarray] = field(default_factory=dict)  # in the manifest's zero window of this file
     units: dict[str, str] = field(default_factory=dict)  # channel -> the unit that the file states, if any
     free: FreeMotion | None = None  # of a decay: the free motion in its window; all else is cut off
+    first_row: int | None = None  # number of the file's first row of numbers, as an editor counts
+
+    def row(self, index: int) -> str:
+        """Where a sample stands in the file, in words: its row as an editor counts, or its number."""
+        number = int(self.rows[index])
+        return f"sample {number + 1}" if self.first_row is None else f"row {self.first_row + number}"
 
     @property
     def good(self) -> np.ndarray:
@@ -95,7 +101,7 @@ def read_series(manifest: Manifest, folder: Path) -> tuple[Series, ...]:
     series: list[Series] = []
     for name in dict.fromkeys(test.file for test in manifest.tests):
         try:
-            tables[name] = read_table(folder / name)
+            tables[name] = read_table(folder / name, keep_text=True)
         except InputError as error:
             problems += [Problem(f"{name}, {p.where}", p.expected, p.found, p.hint) for p in error.problems]
     for test in manifest.tests:
@@ -144,6 +150,8 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
                 columns[channel] = cells.to_numpy()
                 if (unit := table.attrs.get("stated", {}).get(names[number])) is not None:
                     units[channel] = unit
+            elif mistakes := table.attrs.get("not_numbers", {}).get(number):
+                problems += [replace(one, where=f"{test.file}, {one.where}") for one in mistakes]
             else:
                 row = f" in row {table.attrs['row']}" if "row" in table.attrs else ""
                 problems.append(Problem(where, f"numbers in column {column!r}", f"text such as {cells.iloc[0]!r}{row}"))
@@ -163,6 +171,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
         rows,
         {name: values[still][valid_values(values[still])] for name, values in columns.items()},
         units,
+        first_row=table.attrs.get("row"),
     )
     return _free(series) if test.kind == "decay" else series
 

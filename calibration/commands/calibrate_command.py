@@ -1,5 +1,6 @@
 """Commands `calibrate`, and `simulate` in the measured waves of a campaign."""
 
+import shlex
 import time as clock
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -170,7 +171,10 @@ def run(
     if truth is not None:
         table("Against the true coefficients", *tables.comparison_with_truth(saved))
         say(tables.agreement_with_truth(saved))
-    say(f"Results are in {out}" if truth is None else f"Open {write_report(out)}")
+    say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them" if truth is None else f"Open {write_report(out)}")
+    if tests == "decays" and any(not one.identifiable for one in saved.baseline.parameters.values()):
+        said = f"jaxhydro uncertainty {shlex.quote(str(campaign.folder))} --calibration {shlex.quote(str(out))} --profile '*'"
+        say(f"Intervals of what is not determined: {said}")
     if not result.converged:
         complain("not converged: the results are marked so")
     say(calibration_sentence(summary_of(saved)), "bold")
@@ -185,6 +189,8 @@ def _print_results(saved: CalibrationFile) -> None:
     table("Errors: RMSE over the motion's standard deviation, before and after", heads, rows, left=5)
     if (damping := tables.linear_quadratic(saved))[1]:
         table(tables.CLASSICAL, *damping)
+        if said := tables.damping_outside(saved):
+            complain(f"warning: {said[0].lower()}{said[1:]}")
     if (energies := tables.bands(saved))[1]:
         table("Errors of energy in bands", *energies, left=4)
 

@@ -91,8 +91,8 @@ def show_diagnosis(saved: DiagnosisFile, notes: list[str]) -> None:
         say(f"Note: {note}")
     say(f"\n{words.verdict_sentence(saved)}", "bold")
     for one in saved.missing.effects:
-        name = words.capitalised(words.effect_in_words(one.effect, one.degree_of_freedom))
-        say(f"{name}: {' '.join(words.describe_certainty(saved, one))} {words.describe_alternatives(one)}")
+        for line in words.effect_in_three_lines(saved, one):
+            say(line)
     say(words.describe_unexplained(saved))
     for force in saved.missing.unexplained.forces:
         say(force.words)

@@ -3,6 +3,7 @@
 import re
 import shutil
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from calibration.campaign.manifest import WAVE
@@ -40,6 +41,7 @@ def init_campaign(folder: Path, platform: str, scale: float | None, files: Seque
     stated = (folder.resolve().name or "campaign", platform, not _is_builtin(platform), scale)
     draft = draft_of_files(*stated, files, _length(description)) if files else example_draft(*stated)
     _check_names(files, [path for path, _ in beside])
+    draft = replace(draft, sizes=_sizes(description))
     with staged(folder) as temporary:
         (temporary / MANIFEST).write_text(campaign_text(draft), encoding="utf-8")
         (temporary / PLATFORM_FILE).write_text(text, encoding="utf-8")
@@ -83,6 +85,17 @@ def _length(description: Platform) -> float:
     return float((description.rigid_body.combined()[0] / description.water.density) ** (1 / 3))
 
 
+def _sizes(description: Platform) -> dict[str, float]:
+    """Coefficients of a platform that are not 0: of members, then lumped ones."""
+    lumped = {key: getattr(description, key) for key in ("linear_damping", "quadratic_damping", "added_mass")}
+    return {
+        f"{group}.{name}": float(value)
+        for group, some in (description.coefficients | lumped).items()
+        for name, value in some.model_dump().items()
+        if isinstance(value, float | int) and value
+    }
+
+
 def _check_names(files: Sequence[Path], beside: Sequence[str]) -> None:
     taken = {MANIFEST, PLATFORM_FILE, *(name.lower() for name in beside)}
     if clash := [file for file in files if file.name.lower() in taken]:
@@ -115,6 +128,8 @@ def _print(draft: CampaignDraft, folder: Path) -> None:
         say(f"{GUESSED_UNIT}: the file states no unit.")
     if out := sorted({f"{channel} ({guess.column})" for test in draft.tests for channel, guess in test.left_out.items()}):
         say(f"Left out, since angles are beyond 90 deg: {', '.join(out)}.")
+    if draft.still is not None:
+        say("Taken as still water: {:g} to {:g} s of each file, before the platform is pushed (`zero`).".format(*draft.still))
     say(f"1. Check what is marked CHECK in {manifest}.")
     say(f"2. {_about_platform(draft, folder)}")
     say(f"3. Run: jaxhydro check {folder}")

@@ -31,6 +31,8 @@ from jaxhydro.loads import MooringLines
 DIRECTIONS_AT_ONCE = 64  # directions differentiated at a time: few cost nearly as much as many
 PLAUSIBLE_DEVIATIONS = 2.0  # prior standard deviations from a neutral value to the further end of its plausible range
 TERMS = ("linear_damping.", "quadratic_damping.", "stiffness.", "added_mass.")  # that are candidates where they are zero
+MASS = "mass_properties.mass"
+MIN_HEAVE_STIFFNESS = 1e-9  # 1/m, over the weight: below, nothing restores heave
 MASS_PRIOR_WIDTH = 1.0  # of mass properties, in the deviations of `nearly_known`
 TRIM_PRIOR_WIDTH = 3.0  # of draught and trim, in noticeable sizes
 COVERED_ENDS_PRIOR_WIDTH = 0.7  # of the share of covered ends
@@ -110,6 +112,10 @@ def set_up_study(
     step = sea_step(declared, options) if waves else 0.0
     scales = noticeable_scales(mass, stiffness, motions)
     candidates, scaled, units = catalogue(declared, scales, bool(waves), variance, step)
+    if not stiffness[2, 2] > MIN_HEAVE_STIFFNESS * float(declared.body.mass * declared.environment.gravity):
+        # nothing holds up the weight of more mass: there would be no equilibrium
+        candidates = [replace(one, amplitudes=tuple(x for x in one.amplitudes if x != MASS)) for one in candidates]
+        scaled.pop(MASS)
     for own in extra:
         if own.load is None or set(own.sizes) != set(own.amplitudes) or own.shapes:
             raise ValueError(f"{own.name}: one's own candidate has a load, a size of every amplitude, and no shapes")

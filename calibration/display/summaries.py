@@ -29,7 +29,7 @@ def calibration_summary(calibration: Calibration) -> str:
     said = [f"Calibration{platform} to campaign {calibration.campaign}"]
     said.append(verdict_of_calibration(calibration))
     rows = [
-        (label, value_text(write_calibration.parameter(one)), readable_unit(one.unit) if one.identifiable else "")
+        (label, value_text(write_calibration.parameter(one)), readable_unit(one.unit))
         for label, one in calibration.parameters.items()
         if math.isfinite(one.value)
     ]

@@ -12,7 +12,7 @@ from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.fitting.decay_part import DecayPart, series_of
 from calibration.fitting.fit import Fit, Report
-from calibration.fitting.fit_conclusion import calibration_of, records_not_followed, source_of
+from calibration.fitting.fit_conclusion import calibration_of, period_remarks, records_not_followed, source_of
 from calibration.fitting.normal_equations import cost_of
 from calibration.fitting.progress import Progress, run_interruptibly
 from calibration.parameters.space import ParameterSpace, match_free_labels, parameter_space
@@ -139,7 +139,7 @@ def conclude(campaign: Campaign, declared: Model, fit: Fit, seconds: float) -> C
     uncertainty = fit.uncertainty(source_of(fit.decays.records))
     lost = records_not_followed(fit.decays.tests, declared)
     tests = [*fit.decays.tests, *held_out(campaign, declared, fit.model)]
-    return calibration_of(campaign, fit, uncertainty, tests, seconds, lost=lost)
+    return calibration_of(campaign, fit, uncertainty, tests, seconds, lost=lost, first=period_remarks(tests))
 
 
 def held_out(campaign: Campaign, declared: Model, model: Model) -> list[TestFit]:

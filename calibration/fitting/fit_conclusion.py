@@ -12,6 +12,7 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.wave_band import band_sentence
+from calibration.decay_analysis.period_change import unexplained_period_change
 from calibration.fitting.fit import Fit
 from calibration.fitting.unit_hints import unit_hints
 from calibration.formatting import listed, percent_span
@@ -133,6 +134,23 @@ def records_not_followed(tests: Sequence[TestFit], declared: Model) -> list[str]
         f"measured {_periods(some)}, declared model {modes.of(channel):.3g} s. Check scale, units, mass and stiffness"
         for channel, some in lost.items()
     ]
+
+
+def period_remarks(tests: Sequence[TestFit]) -> list[str]:
+    """Sentences on fitted decays whose period changes with the amplitude otherwise than the model's."""
+    said = []
+    for test in tests:
+        main = test.main
+        if test.use != "fit" or test.kind != "decay" or main.relative >= NOT_FOLLOWED_ERROR:
+            continue
+        found = unexplained_period_change(test.time, main.measured, main.simulated, main.noise)
+        if found is not None:
+            said.append(
+                f"{test.id}: the period of {main.channel} goes from {found.large:.4g} s at large amplitude to "
+                f"{found.small:.4g} s at small, the model's from {found.simulated_large:.4g} to {found.simulated_small:.4g} s. "
+                "`jaxhydro diagnose` looks for what the model lacks"
+            )
+    return said
 
 
 def _periods(tests: Sequence[TestFit]) -> str:

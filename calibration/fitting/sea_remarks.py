@@ -8,6 +8,7 @@ from calibration.result import TestFit, error_of_energies
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.platform.drag_laws import drag_laws_of
+from jaxhydro.units import rounded_up
 
 # natural periods: the energy of a random motion in fewer says little (its relative deviation is some 1/sqrt(n))
 MIN_PERIODS = 10.0
@@ -31,6 +32,7 @@ def _laws(model: Model) -> Iterator[str]:
 
 def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
     modes = natural_modes(model)
+    longest = 0.0
     alike: dict[str, list[str]] = {}
     for test in tests:
         if test.kind != "irregular" or test.use != "fit":
@@ -43,11 +45,12 @@ def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
             if math.isfinite(period) and length < MIN_PERIODS * period
         ]
         if few:
+            longest = max(longest, *(MIN_PERIODS * period for period in periods.values() if math.isfinite(period)))
             alike.setdefault(f"{length:.0f} s are few natural periods ({', '.join(few)})", []).append(test.id)
     for short, ids in alike.items():
         yield (
             f"{listed(ids)}: {short}: how much energy a slow motion has in them is to a good part chance, and stated "
-            "deviations are too small"
+            f"deviations are too small. {rounded_up(longest):g} s or more after the transient would tell"
         )
 
 

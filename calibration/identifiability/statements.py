@@ -85,9 +85,9 @@ class Fix(NamedTuple):
 
     def __str__(self) -> str:
         known = listed([f"{label} to {percent(deviation)}" for label, deviation in self.after.items()])
-        gain = f"takes {percent(self.share)} off the summed variance of the others"
-        gain += f" and leaves {known}" if known else ""
-        return f"fix {self.label} or give it a prior: this {gain}"
+        gain = f"the others are then known better, {known}" if known else "the others are then known better"
+        ways = "fix it (`calibrate.fixed`) or give it a prior (`calibrate.priors`)"
+        return f"if {self.label} is known from elsewhere, {ways}: {gain}"
 
 
 class Collinear(NamedTuple):

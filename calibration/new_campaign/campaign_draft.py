@@ -25,6 +25,7 @@ class TestDraft:
         overrides: channel -> column, where it is not the campaign's; None where the file has none.
         repeats: Number of tests of this kind and motion.
         left_out: channel -> column of angles beyond 90 degrees, which are not used.
+        still: Time in which the platform rests before it is pushed, in the file's unit.
     """
 
     __test__ = False  # not for pytest
@@ -37,6 +38,7 @@ class TestDraft:
     overrides: Mapping[str, ColumnGuess | None] = field(default_factory=dict)
     repeats: int = 1
     left_out: Columns = field(default_factory=dict)
+    still: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,8 @@ class CampaignDraft:
         columns: channel (time, motions, wave) -> column of the files.
         tests: Tests, in the order of the files.
         from_files: Whether data files were read; otherwise it is an example.
+        still: Time in which the platform rests in every file, in the files' unit.
+        sizes: Coefficients of the platform that are not 0, by label.
     """
 
     name: str
@@ -60,6 +64,8 @@ class CampaignDraft:
     columns: Columns
     tests: tuple[TestDraft, ...]
     from_files: bool
+    still: tuple[float, float] | None = None
+    sizes: Mapping[str, float] = field(default_factory=dict)
 
 
 def example_draft(name: str, platform: str, own_platform: bool, scale: float | None) -> CampaignDraft:

@@ -20,10 +20,14 @@ from calibration.new_campaign.column_guesses import (
     ranges_without_unit,
     values_of,
 )
-from calibration.new_campaign.column_names import motion_in
+from calibration.new_campaign.column_names import channel_of, motion_in
 from calibration.new_campaign.kind_guesses import guess_kind
+from calibration.new_campaign.still_water import common_still_time, still_time
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.data_files import read_table
+from jaxhydro.units import SI
+
+_EMPTY_CELL = "Leave the cell empty where nothing was measured, or delete the row."
 
 
 def draft_of_files(
@@ -61,7 +65,7 @@ def draft_of_files(
         raise InputError("data files", [Problem(file, expected, "none", "Is the unit in the header right?") for file in bare])
     shared = _shared_columns(drafts)
     tests = [replace(test, overrides=_overrides(shared, test)) for test in drafts]
-    return CampaignDraft(name, platform, own_platform, scale, shared, _with_uses(tests), True)
+    return CampaignDraft(name, platform, own_platform, scale, shared, _with_uses(tests), True, common_still_time(tests))
 
 
 def _drafts(
@@ -76,7 +80,9 @@ def _drafts(
         motions = {dof: values[dof] for dof in DOFS if dof in values}
         guess = guess_kind(values["time"], motions, values.get(WAVE), length, motion_in(file.stem))
         id = _id(file.stem, [test.id for test in tests])
-        tests.append(TestDraft(id, file.name, guess, "fit", own, left_out={name: found[name] for name in out}))
+        out_of_range = {name: found[name] for name in out}
+        still = still_time(values["time"] / SI["time"][own["time"].unit], motions, guess.degree_of_freedom)
+        tests.append(TestDraft(id, file.name, guess, "fit", own, left_out=out_of_range, still=still))
     return tests
 
 
@@ -96,7 +102,7 @@ def _read(files: Sequence[Path]) -> list[pd.DataFrame]:
     errors: list[InputError] = []
     for file in files:
         try:
-            tables.append(read_table(file))
+            tables.append(_with_numbers(file, read_table(file, keep_text=True)))
         except InputError as error:
             errors.append(error)
     if len(errors) == 1:
@@ -105,6 +111,20 @@ def _read(files: Sequence[Path]) -> list[pd.DataFrame]:
         problems = [replace(p, where=f"{error.source}, {p.where}".rstrip(", ")) for error in errors for p in error.problems]
         raise InputError("data files", problems)
     return tables
+
+
+def _with_numbers(file: Path, table: pd.DataFrame) -> pd.DataFrame:
+    """The table. Raises InputError where a column that may be a channel has text among its numbers."""
+    names = [str(name) for name in table.columns]
+    unnamed = names == [str(i) for i in range(len(names))]
+    mistakes = {
+        number: some
+        for number, some in table.attrs.get("not_numbers", {}).items()
+        if unnamed or channel_of(names[number]) is not None
+    }
+    if mistakes:
+        raise InputError(str(file), [replace(one, hint=_EMPTY_CELL) for some in mistakes.values() for one in some])
+    return table
 
 
 def _check_columns(files: Sequence[Path], tables: Sequence[pd.DataFrame], guesses: Sequence[Columns]) -> None:

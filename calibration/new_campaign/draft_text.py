@@ -23,9 +23,11 @@ _MARKS = {
 }
 _OPTIONAL = """\
 # noise: {surge: 0.01}          # standard deviation of the sensor's noise, in the unit of the channel; left out: estimated
-# zero: {window: [0.0, 10.0]}   # times of still water in every file, or {test: ID}; left out: the files' zero is kept
 # tracked_point: [0, 0, 0.5]    # where motions were recorded, m from the reference point; left out: at the reference point
 """
+_NO_ZERO = (
+    "# zero: {window: [0.0, 10.0]}   # times of still water in every file, or {test: ID}; left out: the files' zero is kept\n"
+)
 _TESTS = """\
 # kind: decay, regular, irregular, static, forced. use: fit; holdout, which judges the fit; ignore.
 # More keys of a test: window: [t0, t1], the part of the file; transient: 100, left out at the start of a test in waves.
@@ -34,11 +36,7 @@ _EXAMPLE_IN_WAVES = """\
 #  - {id: sea-1, kind: irregular, file: sea-1.csv, use: fit}     # a test in waves needs `wave_channel`
 #  - {id: wave-1, kind: regular, file: wave-1.csv, use: fit}
 """
-_CALIBRATE = """\
-# calibrate:                    # left out: all coefficients that are not 0 in platform.yaml
-#   free: ["column.*"]          # which coefficients are fitted
-#   fixed: [column.Ca_z]        # which are not
-"""
+_EXAMPLE_SIZES = {"column.Cd_t": 1.0}
 
 
 def campaign_text(draft: CampaignDraft) -> str:
@@ -61,10 +59,10 @@ def campaign_text(draft: CampaignDraft) -> str:
     )
     out = {name: guess for test in draft.tests for name, guess in test.left_out.items() if name not in draft.columns}
     blocks.append("".join(f"# {_channel(name, guess)}   # left out: beyond 90 deg\n" for name, guess in out.items()))
-    blocks += [_wave_channel(draft), _OPTIONAL, "tests:\n", _TESTS, _aligned(map(_test_line, draft.tests))]
+    blocks += [_wave_channel(draft), _zero(draft), _OPTIONAL, "tests:\n", _TESTS, _aligned(map(_test_line, draft.tests))]
     if not draft.from_files:
         blocks.append(_EXAMPLE_IN_WAVES)
-    return "".join((*blocks, _CALIBRATE))
+    return "".join((*blocks, _calibrate(draft)))
 
 
 def yaml_scalar(value: str | int) -> str:
@@ -122,6 +120,29 @@ def _wave_channel(draft: CampaignDraft) -> str:
         return f"{line}   # of tests in waves; position of the gauge: x, y in m\n"
     text = f"wave_channel: {{column: {yaml_scalar(wave.column)}, unit: {wave.unit}, position: [0.0, 0.0]}}"
     return f"{text}   # {_reason(wave, draft)}; position of the gauge (x, y in m) is not known\n"
+
+
+def _zero(draft: CampaignDraft) -> str:
+    if draft.still is None:
+        return _NO_ZERO
+    begin, end = draft.still
+    where = "every file" if len(draft.tests) > 1 else "the file"
+    return f"zero: {{window: [{begin:g}, {end:g}]}}   # CHECK: {where} begins at rest; motions count from there\n"
+
+
+def _calibrate(draft: CampaignDraft) -> str:
+    """Commented keys of the fit, with a coefficient of the platform as an example."""
+    sizes = dict(draft.sizes or _EXAMPLE_SIZES)
+    label, value = next(iter(sizes.items()))
+    group = f"{label.split('.')[0]}.*"
+    return (
+        "# calibrate:                    # left out: all coefficients that are not 0 in platform.yaml\n"
+        f'#   free: ["{group}"]   # which coefficients are fitted\n'
+        f"#   fixed: [{list(sizes)[-1]}]   # which are not\n"
+        f"#   bounds: {{{label}: [{0.2 * value:.3g}, {5 * value:.3g}]}}   # what is possible at all\n"
+        f"#   priors: {{{label}: {{value: {value:.3g}, standard_deviation: {0.2 * abs(value):.3g}}}}}"
+        "   # what is known from elsewhere\n"
+    )
 
 
 def _test_line(test: TestDraft) -> tuple[str, str]:

@@ -2,7 +2,7 @@
 
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
-from calibration.formatting import number, percent, quantity, readable_unit, with_deviation
+from calibration.formatting import bracketed, number, percent, quantity, readable_unit, with_deviation
 from calibration.report.diagnosis_words import (
     describe_probability,
     describe_range,
@@ -45,7 +45,8 @@ def effects(saved: DiagnosisFile) -> Rows:
             percent(one.evidence.holdout_gain),
         )
         for i, (name, value) in enumerate(sorted_by_certainty(one.parameters)):
-            said = quantity(value.value, value.standard_deviation, value.unit) if is_determined(value) else UNDETERMINED
+            said = quantity(value.value, value.standard_deviation, value.unit)
+            said = said if is_determined(value) else f"({quantity(value.value, None, value.unit)}) {UNDETERMINED}"
             size = (plain_name(name), said, describe_range(one, name))
             rows.append((first[0], *size, *first[1:]) if i == 0 else ("", *size, "", ""))
     gain = f"Gain over {validation_tests(saved)}"
@@ -155,7 +156,8 @@ def anatomy(saved: DiagnosisFile) -> Rows:
 def _value(one: Parameter | None) -> str:
     if one is None:
         return "–"
-    text = with_deviation(one.value, one.standard_deviation) if is_determined(one) else UNDETERMINED
+    known = with_deviation(one.value, one.standard_deviation)
+    text = known if is_determined(one) else f"{bracketed(one.value)} {UNDETERMINED}"
     return f"{text}, at its bound" if one.at_bound else text
 
 

@@ -198,6 +198,23 @@ def describe_alternatives(one: FoundEffect) -> str:
     return said.strip()
 
 
+def effect_in_three_lines(saved: DiagnosisFile, one: FoundEffect) -> tuple[str, str, str]:
+    """Name and size of an effect; how sure it is; what else it could be, with the test that would tell."""
+    name = capitalised(effect_in_words(one.effect, one.degree_of_freedom))
+    sizes = "; ".join(describe_parameter(*item) for item in sorted_by_certainty(one.parameters))
+    evidence = one.evidence
+    gain = evidence.holdout_gain
+    found = [f"probability {describe_probability(evidence.probability)}"]
+    if gain is None:
+        found.append("no test was held out to check it")
+    else:
+        changes = f"falls by {percent(gain)} where it falls most" if gain >= 0 else f"grows by {percent(-gain)}"
+        found.append(f"squared error of {validation_tests(saved)} {changes}")
+    found.append(f"{evidence_strength(evidence)} evidence on the fitted tests")
+    against = describe_alternatives(one) or "Nothing else that was tried does as well."
+    return f"{name}: {sizes}" if sizes else name, f"  How sure: {'; '.join(found)}.", f"  What else it could be: {against}"
+
+
 def describe_unexplained(saved: DiagnosisFile) -> str:
     """What nothing explains."""
     left = saved.missing.unexplained

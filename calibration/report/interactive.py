@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from markupsafe import Markup
 
-from calibration.formatting import number
+from calibration.formatting import listed, number
 from calibration.report.recorded_motion import RecordedMotion, RecordedTest, read_motion
 from jaxhydro.units import unit_of
 
@@ -83,6 +83,9 @@ def _notes(motion: RecordedMotion, thinning: int) -> list[str]:
     if thinning > 1:
         step = 2 * thinning * max(float(np.median(np.diff(test.time))) for test in motion.tests)
         said.append(f"Series are thinned: of every {number(step, 3)} s the smallest and the largest sample are shown.")
+    if motion.offsets:
+        sizes = listed([f"{number(size, 2)} {unit_of(name)} in {name}" for name, size in motion.offsets.items()])
+        said.append(f"Sensor offsets that the fit found are taken off the measured series: up to {sizes}.")
     if motion.hull is None:
         said.append("No hull is drawn: the model has no members, or an earlier version wrote these results.")
     return said

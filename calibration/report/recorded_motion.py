@@ -76,10 +76,17 @@ class RecordedTest(NamedTuple):
 
 
 class RecordedMotion(NamedTuple):
-    """All series of a result folder, and outlines of the hull (element, end, point, axis; m), or None."""
+    """All series of a result folder.
+
+    Attributes:
+        tests: Series by test.
+        hull: Outlines of the hull (element, end, point, axis; m), or None.
+        offsets: Largest fitted sensor offset (m, deg) by channel, which is taken off the measured series.
+    """
 
     tests: list[RecordedTest]
     hull: np.ndarray | None
+    offsets: dict[str, float] = {}
 
 
 def read_motion(folder: Path) -> RecordedMotion | None:
@@ -94,7 +101,15 @@ def read_motion(folder: Path) -> RecordedMotion | None:
     except (OSError, ValueError, KeyError):
         return None
     hull = data["hull"].values if "hull" in data else None
-    return RecordedMotion(tests, hull) if tests else None
+    return RecordedMotion(tests, hull, _offsets(data)) if tests else None
+
+
+def _offsets(data: xr.Dataset) -> dict[str, float]:
+    """Largest sensor offset of each channel, without those that are zero."""
+    if "sensor_offset" not in data:
+        return {}
+    largest = abs(data["sensor_offset"].fillna(0.0)).max("test")
+    return {str(name): float(value) for name, value in zip(largest["channel"].values, largest.values) if value > 0}
 
 
 def _names(data: xr.Dataset) -> list[str]:

@@ -8,12 +8,14 @@ from calibration.campaign.checks import Finding
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
-from calibration.formatting import counted, number, percent, readable_unit, signed_percent, with_deviation
+from calibration.formatting import bracketed, counted, listed, number, percent, readable_unit, signed_percent, with_deviation
 from calibration.result import Calibration
 from calibration.results.calibration_file import CalibrationFile, ChannelError, Parameter
 from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 
-CLASSICAL = "Classical analysis of the decays: x'' + p x' + q x'|x'| + w² x = 0"
+CLASSICAL = "Classical (P-Q) analysis of the decays: x'' + p x' + q x'|x'| + w² x = 0"
+MAX_HALF_WIDTHS = 1.5  # of a 95 % interval (3 standard deviations): a simulated value beyond is no chance
+MAX_NAMED_DECAYS = 3
 AGREEMENT_DEVIATIONS = 2.0  # standard deviations within which a value agrees with the true one
 
 
@@ -43,8 +45,9 @@ def parameters(saved: CalibrationFile) -> Rows:
 
 
 def value_text(one: Parameter) -> str:
-    """A calibrated value with its standard deviation, or what it is instead."""
-    text = with_deviation(one.value, one.standard_deviation) if one.identifiable else UNDETERMINED
+    """A calibrated value with its standard deviation; in brackets where the records do not determine it."""
+    known = with_deviation(one.value, one.standard_deviation)
+    text = known if one.identifiable else f"{bracketed(one.value)} {UNDETERMINED}"
     return f"{text}, at its bound" if one.at_bound else text
 
 
@@ -99,6 +102,24 @@ def linear_quadratic(saved: CalibrationFile) -> Rows:
             rows.append((id, number(one.period, 4), *values, f"1/{one.unit}"))
     heads = ("Test", "Period (s)", "p measured ± 95 % (1/s)", "p simulated (1/s)", "q measured ± 95 %", "q simulated")
     return (*heads, "Unit of q"), rows
+
+
+def damping_outside(saved: CalibrationFile) -> str:
+    """Where the simulated damping is far outside the measured interval, in sentences; "" where it is nowhere."""
+    outside = []
+    for id, about in saved.tests.items():
+        if (both := about.linear_quadratic) is not None:
+            terms = {"p": both.linear, "q": both.quadratic}
+            far = [name for name, one in terms.items() if abs(one.simulated - one.measured) > MAX_HALF_WIDTHS * one.half_width]
+            outside += [f"{' and '.join(far)} of {id}"] if far else []
+    if not outside:
+        return ""
+    more = len(outside) - MAX_NAMED_DECAYS
+    named = listed([*outside[:MAX_NAMED_DECAYS], *([counted(more, "further decay")] if more > 0 else [])])
+    return (
+        f"Far outside the measured interval: {named}. The platform's damping grows with the amplitude in another way than the "
+        "model's: `jaxhydro diagnose` looks for what the model lacks."
+    )
 
 
 def bands(saved: CalibrationFile) -> Rows:

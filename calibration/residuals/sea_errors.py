@@ -11,7 +11,9 @@ from jaxhydro.analysis.spectral import SEGMENT, PowerSpectrum, band_integral, po
 from jaxhydro.units import for_people
 
 OVERLAP, WINDOW = 0.5, "hann"
-WELCH = f"Welch, {WINDOW} segments of {SEGMENT:g} s that overlap by {OVERLAP:.0%}; a shorter record is one, not windowed"
+WELCH = (
+    f"Welch, {WINDOW} segments of {SEGMENT:g} s that overlap by {OVERLAP:.0%} or more; a shorter record is one, not windowed"
+)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -4,7 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from calibration.formatting import counted, interval, listed, number, percent_span, readable_unit, to_width
+from calibration.formatting import bracketed, counted, interval, listed, number, percent_span, readable_unit, to_width
 from calibration.results.calibration_file import Parameter
 from calibration.results.result_folder import Figure
 from calibration.vocabulary import UNDETERMINED, Rows
@@ -175,6 +175,7 @@ def intervals_table(saved: UncertaintyFile) -> Rows:
     for label, one in saved.parameters.items():
         low, high = one.laplace
         value = number(one.value) if low is None or high is None else to_width(one.value, high - low)
+        value = value if one.identifiable else bracketed(one.value)
         excess = "–" if one.white_too_small_by is None else f"{number(one.white_too_small_by, 2)} times"
         flag = "at its bound" if one.at_bound else "" if one.identifiable else UNDETERMINED
         rows.append((label, value, interval(low, high), readable_unit(one.unit), excess, flag))

@@ -85,7 +85,7 @@ class Uncertainty:
         for label, along in self.profiles.items():
             if _apart(along):
                 profiled, laplace = interval(*along.interval), interval(*along.laplace)
-                yield f"{label}: {profiled} by the profile, {laplace} by the covariance: believe the profile"
+                yield f"{label}: {profiled} by the profile, {laplace} by the covariance: quote the profile"
         if self.sampled and self.samples is None:
             yield "NUTS: stopped by the user before there were draws enough"
         if self.samples is not None:

@@ -55,14 +55,14 @@ def power_spectrum(
 ) -> PowerSpectrum:
     """Power spectral density by Welch's method.
 
-    The mean of each segment is removed. Samples at the end of the record that do not fill a segment are not used. A segment
-    as long as the record gives the raw periodogram without a window, whose sum is exactly the variance.
+    The mean of each segment is removed. Segments overlap by `overlap` or a little more, so that the last one reaches the end of
+    the record. A segment as long as the record gives the raw periodogram without a window, whose sum is exactly the variance.
 
     Args:
         time: Sample times (s), (t,), even.
         x: Record (unit), (t,).
         segment: Length of a segment (s). None: 1000 s, or the whole of a shorter record.
-        overlap: Fraction of a segment shared with the next, from 0 to below 1.
+        overlap: Least fraction of a segment shared with the next, from 0 to below 1.
         window: Name of a window of `scipy.signal.get_window`.
 
     Returns:
@@ -274,7 +274,7 @@ def transfer_function(
     _, motion = _record(time, motion)
     segment = min(SEGMENT, len(wave) * step / MIN_TRANSFER_SEGMENTS) if segment is None else segment
     count, shared, window = _segments(len(wave), step, segment, overlap, window)
-    if len(wave) < 2 * count - shared:
+    if len(wave) < 2 * count - int(overlap * count):  # of two that share more, the coherence is near 1 whatever they are
         raise ValueError(f"two segments or more expected, found a record of {len(wave) * step:g} s, segments of {segment:g} s")
     options = {"fs": 1 / step, "window": window, "nperseg": count, "noverlap": shared, "detrend": "constant"}
     frequency, across = scipy.signal.csd(wave, motion, **options)
@@ -402,7 +402,8 @@ def _record(time: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
 def _segments(count: int, step: float, segment: float | None, overlap: float, window: str) -> tuple[int, int, str]:
     """Samples per segment, samples shared with the next, and window.
 
-    The window is "boxcar" where one segment is the whole record.
+    The segments reach the end of the record, but for fewer samples than there are segments. The window is "boxcar" where one
+    segment is the whole record.
     """
     length = SEGMENT if segment is None else segment
     if not (length >= 4 * step and 0 <= overlap < 1):
@@ -410,7 +411,9 @@ def _segments(count: int, step: float, segment: float | None, overlap: float, wi
     if length >= (count - 0.5) * step:
         return count, 0, "boxcar"
     samples = round(length / step)
-    return samples, min(int(overlap * samples), samples - 1), window
+    between = samples - min(int(overlap * samples), samples - 1)  # the starts of two segments, at most
+    further = -(-(count - samples) // between)
+    return samples, samples - (count - samples) // further if further else 0, window
 
 
 def _cycles(time: np.ndarray, centred: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:

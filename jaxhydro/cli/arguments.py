@@ -257,7 +257,9 @@ def _option(name: str, panel: str, text: str, default: str | bool = False, **mor
 
 OUT = "Folder for the results; made where absent."
 Out = Annotated[Path | None, typer.Option("--out", help=OUT, show_default="a new one, such as my-campaign-calibration")]
-Campaign = Annotated[Path, typer.Argument(help="A campaign's folder, or its campaign.yaml.")]
+Campaign = Annotated[
+    Path, typer.Argument(help="A campaign's folder, its campaign.yaml, or volturnus-s-decays, which is embedded.")
+]
 Figures = Annotated[bool, typer.Option(help="Draw figures.")]
 Hs = Annotated[float | None, _option("--hs", SEA, "Significant wave height, m: 4 times the root of the spectrum's area.")]
 Tp = Annotated[float | None, _option("--tp", SEA, "Peak period, s.")]

@@ -13,13 +13,14 @@ from jaxhydro.cli.sea_options import transient_of, with_band
 from jaxhydro.cli.simulate_command import Job, finite, print_remarks, print_rest, told_of_bed
 from jaxhydro.cli.simulation_files import Motion, SeaState, write_motion
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, RequestedSea
+from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, TRANSIENT, TRANSIENT_SHARE, RequestedSea
 from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.sea_of_request import build_sea, impossible, outside
 from jaxhydro.dynamics.simulate import free_decay, largest_step
 from jaxhydro.dynamics.statics import Modes
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark
+from jaxhydro.units import rounded_up
 from jaxhydro.waves.directional_spectrum import WaveSystem
 from jaxhydro.waves.sea_limits import sea_limits, shallow_water
 
@@ -38,14 +39,15 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     transient = transient_of(asked, job.duration, pace)
     kept = times >= begin + transient
     if kept.sum() < MIN_SAMPLES:
-        expected = f"{MIN_SAMPLES} samples or more after the transient of {transient:g} s"
+        enough = duration_of((MIN_SAMPLES + 1) * job.dt, asked.transient, pace)
+        expected = f"{enough:g} s or more, for {MIN_SAMPLES} samples after the transient of {transient:g} s"
         raise InputError("--duration", [Problem("", expected, f"{kept.sum()} of them {job.dt:g} s apart")])
     say("Building the sea ...", stderr=True)
     sea, about, target, notes = build_sea(model, asked, job.duration)
     limits = _limits(model, about, job.duration, asked.order, asked.systems)
     print_remarks([*model.remarks, *wave_remarks(model), *outside(model, sea, about), *limits])
     modes = print_rest(model, job.platform)
-    print_remarks(_start_up(modes, job.duration - transient))
+    print_remarks(_start_up(modes, job.duration - transient, asked.transient, pace))
     step = largest_step(model, asked.band(pace)[1]) if job.step is None else job.step
     about |= {"transient": transient, "step_at_most": step}
     table("Sea", ("Property", "Value"), _about(about), left=2)
@@ -81,13 +83,26 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     return True
 
 
-def _start_up(modes: Modes, kept: float) -> list[Remark]:
+def duration_of(kept: float, transient: float | None, pace: float) -> float:
+    """Shortest duration (s) that keeps so much after its transient, rounded up to two digits.
+
+    Args:
+        kept: What statistics are over (s).
+        transient: As it was asked for (s); None: the usual one, which depends on the duration.
+        pace: Pace of the platform.
+    """
+    if transient is not None:
+        return rounded_up(kept + transient)
+    return rounded_up(min(kept / (1 - TRANSIENT_SHARE), kept + TRANSIENT * pace))
+
+
+def _start_up(modes: Modes, kept: float, transient: float | None, pace: float) -> list[Remark]:
     """Warning where statistics are over few natural periods, so that the motion of the start is still in them."""
     if not modes.period.size or kept >= MIN_NATURAL_PERIODS * modes.period[0]:
         return []
     said = f"statistics over {kept:.4g} s are {kept / modes.period[0]:.2g} natural periods of {modes.motion[0]}"
-    longer = MIN_NATURAL_PERIODS * modes.period[0]
-    return [Remark(f"{said}: the start and chance are in its numbers. Take {longer:.2g} s or more (--duration)", warning=True)]
+    longer = duration_of(MIN_NATURAL_PERIODS * float(modes.period[0]), transient, pace)
+    return [Remark(f"{said}: the start and chance are in its numbers. Take --duration {longer:g} or more", warning=True)]
 
 
 def _limits(model: Model, about: dict[str, Any], duration: float, order: int, systems: Sequence[WaveSystem]) -> list[Remark]:

@@ -11,6 +11,7 @@ from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.cli.options import finite, positive, wrong
 from jaxhydro.dynamics.requested_sea import Record, RequestedSea, usual_transient
 from jaxhydro.errors import InputError, Problem, suggest
+from jaxhydro.files import embedded_campaigns
 from jaxhydro.units import SI
 from jaxhydro.waves.irregular import sampling_interval
 
@@ -53,7 +54,7 @@ def by_option(given: Mapping[str, Any]) -> dict[str, Any]:
 
 def is_campaign(name: str) -> bool:
     """Whether the first argument is a campaign, not a platform."""
-    return Path(name).is_dir() or Path(name).name == "campaign.yaml"
+    return Path(name).is_dir() or Path(name).name == "campaign.yaml" or name in embedded_campaigns()
 
 
 def of_campaign(given: Mapping[str, Any]) -> dict[str, Any]:

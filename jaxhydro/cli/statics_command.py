@@ -1,7 +1,7 @@
 """Command `statics`: where a platform rests, by which forces, and what its moorings do."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import jax.numpy as jnp
@@ -22,6 +22,9 @@ from jaxhydro.units import for_people, unit_of
 
 POINTS = 6  # of an offset curve
 NO_FORCE = 1e-9  # of the weight: what is below is rounding
+NO_COUPLING = 1e-13  # of the largest stiffness: what is below is rounding, also where neither motion is restored
+PREFIXES = ((1e6, "M"), (1e3, "k"), (1.0, ""))  # of N
+OF_TENSIONS = PREFIXES[1:]  # as moorings are described
 
 
 def print_statics(platform: str, force: Mapping[str, float], offset: Mapping[str, float], calibration: Path | None) -> None:
@@ -61,22 +64,33 @@ def _force_unit(dof: str) -> str:
     return "N m" if dof in DOFS[3:] else "N"
 
 
+def _prefix(values: Iterable[float], prefixes: Sequence[tuple[float, str]] = PREFIXES) -> tuple[float, str]:
+    """Size and letter of the prefix of N with which the largest of some values is 1 or more, where there is one."""
+    largest = max((abs(x) for x in values if math.isfinite(x)), default=0.0)
+    return next(((size, letter) for size, letter in prefixes if largest >= size), prefixes[-1])
+
+
 def _print_forces(model: Model, position: Float[Array, "6"]) -> None:
     forces = forces_by_load(model, position)
     least = NO_FORCE * float(model.body.mass * model.environment.gravity)
-    heads = ("Load", *(f"{dof} ({'MN m' if dof in DOFS[3:] else 'MN'})" for dof in DOFS))
-    rows = [(load, *(f"{x / 1e6:.5g}" if abs(x) > least else "0" for x in six)) for load, six in forces.items()]
+    units = [_prefix(x for six in forces.values() for x in six[part]) for part in (slice(0, 3), slice(3, 6)) for _ in range(3)]
+    heads = ("Load", *(f"{dof} ({letter}{_force_unit(dof)})" for dof, (_, letter) in zip(DOFS, units, strict=True)))
+    rows = [
+        (load, *(f"{x / size:.5g}" if abs(x) > least else "0" for x, (size, _) in zip(six, units, strict=True)))
+        for load, six in forces.items()
+    ]
     table("Forces at rest, about the reference point", heads, rows)
 
 
 def _print_lines(model: Model, position: Float[Array, "6"], when: str) -> None:
     if not (lines := line_states(model, position)):
         return
-    heads = ("Line", "Tension (kN)", "Below the horizontal (deg)", "Strain (%)", "On the sea bed (m)")
+    size, letter = _prefix((line.tension for line in lines), OF_TENSIONS)
+    heads = ("Line", f"Tension ({letter}N)", "Below the horizontal (deg)", "Strain (%)", "On the sea bed (m)")
     rows = [
         (
             str(i + 1),
-            f"{line.tension / 1e3:.5g}",
+            f"{line.tension / size:.5g}",
             f"{math.degrees(line.angle):.4g}",
             f"{100 * line.strain:.3g}",
             f"{line.on_seabed:.4g}",
@@ -89,15 +103,18 @@ def _print_lines(model: Model, position: Float[Array, "6"], when: str) -> None:
 def _print_stiffness(model: Model, position: Float[Array, "6"]) -> None:
     """Stiffness of all loads, and of the moorings alone."""
     heads = ("", *DOFS)
-    parts = {"Stiffness at rest (MN/m, MN, MN m)": linearised(model, position)[1]}
+    total = np.asarray(linearised(model, position)[1])
+    size, letter = _prefix(total.flat)
+    parts = {f"Stiffness at rest ({letter}N/m, {letter}N, {letter}N m)": total}
     if any(isinstance(load, AnyLines) for load in model.loads):
-        parts["Stiffness of the mooring lines alone, earth axes"] = mooring_stiffness(model, position)
+        parts["Stiffness of the mooring lines alone, earth axes"] = np.asarray(mooring_stiffness(model, position))
     for title, stiffness in parts.items():
-        matrix = np.asarray(stiffness) / 1e6
+        matrix = stiffness / size
         largest = np.sqrt(np.outer(abs(np.diag(matrix)), abs(np.diag(matrix))))
+        least = np.maximum(NO_FORCE * largest, NO_COUPLING * abs(matrix).max())
         rows = [
-            (dof, *(f"{x:.5g}" if abs(x) > NO_FORCE * most else "0" for x, most in zip(row, scale)))
-            for dof, row, scale in zip(DOFS, matrix, largest)
+            (dof, *(f"{x:.5g}" if abs(x) > low else "0" for x, low in zip(row, lows, strict=True)))
+            for dof, row, lows in zip(DOFS, matrix, least, strict=True)
         ]
         table(title, heads, rows)
     if len(parts) > 1:
@@ -107,18 +124,20 @@ def _print_stiffness(model: Model, position: Float[Array, "6"]) -> None:
 def _print_curve(model: Model, dof: str, rest: float, most: float) -> None:
     offsets = rest + np.linspace(0.0, most, POINTS)
     curve = offset_curve(model, dof, jnp.asarray(offsets))
-    heads = [f"{dof} ({unit_of(dof)})", f"Force (k{_force_unit(dof)})"]
+    size, letter = _prefix(map(float, curve.force))
+    heads = [f"{dof} ({unit_of(dof)})", f"Force ({letter}{_force_unit(dof)})"]
     others = [other for other in ("surge", "sway", "heave", "roll", "pitch") if other != dof]
     heads += [f"{other} ({unit_of(other)})" for other in others]
     tensions: list[list[LineState]] = [line_states(model, jnp.asarray(one)) for one in curve.position]
-    heads += [f"Line {i + 1} (kN)" for i in range(len(tensions[0]))]
+    line_size, line_letter = _prefix((line.tension for lines in tensions for line in lines), OF_TENSIONS)
+    heads += [f"Line {i + 1} ({line_letter}N)" for i in range(len(tensions[0]))]
     rows = []
     least = NO_FORCE * float(model.body.mass * model.environment.gravity)
     for position, force, lines in zip(curve.position.round(8) + 0.0, curve.force, tensions):
         motion = dict(zip(DOFS, position, strict=True))
-        cells = [f"{float(for_people(dof, motion[dof])):.4g}", "0" if abs(force) < least else f"{force / 1e3:.5g}"]
+        cells = [f"{float(for_people(dof, motion[dof])):.4g}", "0" if abs(force) < least else f"{force / size:.5g}"]
         cells += [f"{float(for_people(other, motion[other]).round(3)) + 0.0:.3f}" for other in others]
-        rows.append((*cells, *(f"{line.tension / 1e3:.5g}" for line in lines)))
+        rows.append((*cells, *(f"{line.tension / line_size:.5g}" for line in lines)))
     table(f"Held in {dof}: the force that it takes{', and the tensions' if tensions[0] else ''}", heads, rows)
     if not np.isfinite(curve.force).all():
         say("nan: the platform or a line finds no balance there")

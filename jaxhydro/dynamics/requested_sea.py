@@ -16,12 +16,13 @@ from jaxhydro.waves.directional_spectrum import (
 from jaxhydro.waves.spreading import circular_moments
 
 MIN_SAMPLES = 100  # samples after the transient
-TRANSIENT = 500.0  # s times its pace, at most a quarter of the duration
+TRANSIENT = 500.0  # s times its pace, at most TRANSIENT_SHARE of the duration
+TRANSIENT_SHARE = 0.25
 
 
 def usual_transient(duration: float, pace: float = 1.0) -> float:
     """Default time (s) that statistics leave out at the start."""
-    return min(TRANSIENT * pace, 0.25 * duration)
+    return min(TRANSIENT * pace, TRANSIENT_SHARE * duration)
 
 
 @dataclass(frozen=True)

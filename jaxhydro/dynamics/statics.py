@@ -373,7 +373,7 @@ def stable_modes(model: Model, moved: Collection[str] = DOFS) -> Modes:
     modes = natural_modes(model)
     if set(modes.unstable) & (set(DOFS) if set(moved) == set(DOFS) else _coupled(model, moved)):
         motions = " and ".join(modes.unstable)
-        raise EquilibriumError(f"the platform is unstable in {motions}: check mass, centre of mass, volume and mooring")
+        raise EquilibriumError(f"the platform is unstable in {motions}: check mass, centre of mass, hydrostatics and mooring")
     return modes
 
 

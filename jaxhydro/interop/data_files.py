@@ -26,14 +26,16 @@ from jaxhydro.interop.spreadsheet import workbook
 from jaxhydro.interop.stated_units import stated_unit
 
 
-def read_table(path: str | Path) -> pd.DataFrame:
+def read_table(path: str | Path, keep_text: bool = False) -> pd.DataFrame:
     """Table of a data file, one row per sample.
 
     `attrs` of the table may have `stated`, the units that the file states, by column. `times` are the columns that were
     written as times of day or time stamps and are now seconds. `row` is the number of the first row of a text file.
+    `not_numbers` has the mistakes of columns of numbers with text among them, by column number.
 
     Args:
         path: The file.
+        keep_text: Whether a column of numbers with text among them stays text. Else it is an error.
 
     Raises:
         InputError: The file is absent, unreadable or not a table of numbers. It names the row (counted from 1, as an editor
@@ -48,7 +50,10 @@ def read_table(path: str | Path) -> pd.DataFrame:
         raise wrong(path, "file", "a table of a sensible size", reason(error)) from error
     if not len(table):
         raise wrong(path, "file", "rows of numbers", "no rows")
-    if not any(kind.kind == "f" for kind in table.dtypes):
+    numeric = any(kind.kind == "f" for kind in table.dtypes)
+    if (mistakes := table.attrs.get("not_numbers")) and not (keep_text and numeric):
+        raise InputError(str(path), [problem for some in mistakes.values() for problem in some])
+    if not numeric:
         raise wrong(path, "file", "a numeric column", "only text, in " + ", ".join(map(str, table.columns[:10])))
     stated = {str(name): stated_unit(str(name), table.attrs.get("units", {})) for name in table.columns}
     table.attrs["stated"] = {name: unit for name, unit in stated.items() if unit is not None}
@@ -143,7 +148,7 @@ def _openfast_text(path: Path) -> pd.DataFrame:
     )
     if units is None:  # another program's
         table = parse(path, lines)
-        if any(kind.kind == "f" for kind in table.dtypes):
+        if any(kind.kind == "f" for kind in table.dtypes) or table.attrs["not_numbers"]:
             return table
         raise wrong(path, "file", "an OpenFAST output: a row of units, (s) (m) (deg), near the top", "no such row")
     load = _openfast_reader("load_ascii_output", path)

@@ -61,7 +61,8 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
     """Return the table in the lines of a file.
 
     Its `attrs` have `units`, the units of columns that the file states in a row of their own; `times`, the names of
-    columns that were written as times and are seconds; `row`, the number of the first row.
+    columns that were written as times and are seconds; `row`, the number of the first row, if the others follow it one by one;
+    `not_numbers`, by column number the mistakes of a column of numbers with text among them. Such a column stays text.
 
     Args:
         path: the file, for messages.
@@ -69,7 +70,7 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
         first: the row number of the first of them in the file.
 
     Raises:
-        InputError: no rows, torn rows, text among numbers, or a header that does not fit.
+        InputError: no rows, torn rows, or a header that does not fit.
     """
     rows = [(number, line) for number, line in enumerate(lines, first) if line.strip()]
     if not any(not line.lstrip().startswith(COMMENTS) for _, line in rows):
@@ -106,12 +107,14 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
         table = table.iloc[:, :-1]
     if found.names is not None and len(names) < len(table.columns):
         raise misfit
-    table.attrs |= {"units": dict(zip(names, found.units or ())), "row": numbers[0]}
+    table.attrs["units"] = dict(zip(names, found.units or ()))
+    if numbers[-1] - numbers[0] == len(numbers) - 1:
+        table.attrs["row"] = numbers[0]
     return table
 
 
 def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | None, names: list[str]) -> pd.DataFrame:
-    """The body as float columns; a column that is text throughout stays text, one that is partly text is a mistake."""
+    """The body as float columns; a column with text stays text, and what is wrong in one that is mostly numbers is kept."""
     body = "\n".join(lines)
     options: dict[str, Any] = {
         "sep": r"\s+" if delimiter is WHITESPACE else delimiter,
@@ -133,7 +136,7 @@ def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | Non
     if len(raw) != len(lines):
         raise wrong(path, "file", f"{len(lines)} rows", f"{len(raw)} after splitting", "look for an unpaired quote")
     columns: list[pd.Series] = []
-    problems: list[Problem] = []
+    not_numbers: dict[int, list[Problem]] = {}
     times: list[str] = []
     for i, name in enumerate(names):
         cells = raw.iloc[:, i]
@@ -155,14 +158,13 @@ def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | Non
                 columns.append(cells.astype(object))
                 continue
         more = f"{len(expected)} such cells in this column" if len(expected) > _SHOWN else ""
-        problems += [
-            Problem(f"row {rows[row]}, column {name or i}", what, repr(cells.iloc[row]), more)
-            for row, what in sorted(expected.items())[:_SHOWN]
-        ]
-        columns.append(values)
-    if problems:
-        raise InputError(str(path), problems)
+        if expected:
+            not_numbers[i] = [
+                Problem(f"row {rows[row]}, column {name or i}", what, repr(cells.iloc[row]), more)
+                for row, what in sorted(expected.items())[:_SHOWN]
+            ]
+        columns.append(cells.astype(object) if expected else values)
     table = pd.concat(columns, axis=1)
     table.columns = pd.Index(names)
-    table.attrs["times"] = times
+    table.attrs |= {"times": times, "not_numbers": not_numbers}
     return table

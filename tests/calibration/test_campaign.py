@@ -310,6 +310,18 @@ def test_a_damaged_matlab_file_does_not_crash_scipy(tmp_path, good, bad):
     assert "damaged, or cut short" in failure(read_table, tmp_path / "a.mat")
 
 
+def test_text_in_a_column_that_nobody_uses_is_no_mistake(tmp_path):
+    rows = [f"{t:.1f},{x:.4f},{p:.4f},{'fault' if i == 7 else 1.5}" for i, (t, x, p) in enumerate(zip(T, SURGE, PITCH))]
+    document = manifest()
+    text = "\n".join(["t,x,p,force", *rows])
+    folder = write(tmp_path, document, {document["tests"][0]["file"]: text})
+    np.testing.assert_allclose(records(folder)["d-1"].values["surge"], SURGE, atol=1e-4)
+    rows[7] = rows[7].replace(",", ",off", 1)
+    (folder / document["tests"][0]["file"]).write_text("\n".join(["t,x,p,force", *rows]))
+    said = failure(records, folder)
+    assert "d.csv, row 9, column x: expected a number, found 'off" in said and "force" not in said
+
+
 def test_files_that_are_not_there(tmp_path):
     (tmp_path / "folder.csv").mkdir()
     names = ("none.csv", "none.mat", "none.nc", "none.out", "none.outb", "folder.csv", "x\0.csv", "y" * 400 + ".csv")
@@ -458,7 +470,7 @@ def test_a_numeric_id_is_a_name_and_each_file_is_read_once(tmp_path, monkeypatch
     ]
     folder = write(tmp_path, document)
     count = []
-    monkeypatch.setattr(module, "read_table", lambda path: count.append(path) or read_table(path))
+    monkeypatch.setattr(module, "read_table", lambda path, **how: count.append(path) or read_table(path, **how))
     series = read_series(*read_manifest(folder))
     assert [one.test.id for one in series] == ["21337", "b"] and len(count) == 1
 
@@ -479,15 +491,21 @@ def spoilt(**changes):
     ("csv", "words"),
     [
         (spoilt(t={(200, 400): T[200:] + 4.0}), "channel time: a gap of 4.1 s after 19.9 s"),
-        (spoilt(t={(100, 101): T[99]}), "channel time: 1 times that repeat, the first 9.9 s: these rows are dropped"),
-        (spoilt(x={(50, 53): np.nan}), "surge: 3 values missing or infinite, the first near 5 s: these rows are dropped"),
+        (
+            spoilt(t={(100, 101): T[99]}),
+            "channel time: 1 times that repeat, the first 9.9 s in row 102: these rows are dropped",
+        ),
+        (
+            spoilt(x={(50, 53): np.nan}),
+            "surge: 3 values missing or infinite, the first near 5 s, row 52: these rows are dropped",
+        ),
         (spoilt(x={(50, 53): np.inf}), "channel surge: 3 values missing or infinite"),
         (spoilt(x={(50, 53): 1e30}), "channel surge: 3 values missing or infinite"),
         (
             spoilt(x={(50, 53): -9999}),
-            "surge: 3 values missing, as -9999 seems to say, the first near 5 s: these rows are dropped",
+            "surge: 3 values missing, as -9999 seems to say, the first near 5 s, row 52: these rows are dropped",
         ),
-        (spoilt(t={(50, 52): np.nan}), "channel time: 2 values missing or infinite, the first near 4.9 s"),
+        (spoilt(t={(50, 52): np.nan}), "channel time: 2 values missing or infinite, the first near 4.9 s, row 52"),
         (spoilt(x={(100, 140): SURGE[100]}), "channel surge: frozen from 10 s to 13.9 s, 40 samples"),
         (table(x=np.clip(SURGE, -9, 2.2)), "channel surge: clipped: "),
         (table(x=np.clip(SURGE, -2.2, 9)), "at its lowest value, -2.2"),
@@ -698,7 +716,7 @@ def test_a_faulty_test_marked_ignore_is_left_out(tmp_path):
     campaign = load_campaign(folder)
     assert [record.id for record in campaign.records] == ["d-1"]
     assert [finding.message for finding in campaign.findings if finding.test == "d-2"] == [
-        "left out: a step back from 19.9 s to 16 s at sample 201 of the file"
+        "left out: a step back from 19.9 s to 16 s in row 202 of the file"
     ]
     assert "d-2" in failure(
         load_campaign,

@@ -11,9 +11,10 @@ from PIL import Image
 from typer.testing import CliRunner
 
 from calibration.campaign.load_campaign import load_campaign
-from calibration.report.check_tables import PeriodComparison, compare_periods, doubts, verdict
+from calibration.report.check_tables import PeriodComparison, compare_periods, doubts, periods, verdict
 from jaxhydro.cli import app as cli
 from jaxhydro.dynamics.statics import natural_modes
+from jaxhydro.errors import InputError
 from jaxhydro.hull.strips import Member
 from jaxhydro.plots.hull_drawing import hull_figure, outline
 from jaxhydro.plots.style import style
@@ -78,6 +79,34 @@ def test_a_platform_out_of_balance_or_not_one_s_own_is_named(tmp_path):
     assert "m too low, draught 20" in heavy
     (folder / "platform.yaml").write_bytes((DEMO.parents[1] / "platforms" / "volturnus-s.yaml").read_bytes())
     assert "platform.yaml is still the built-in volturnus-s: put your platform in" in list(doubts(load_campaign(folder), []))
+
+
+@pytest.mark.parametrize("command", ["check", "calibrate", "diagnose"])
+def test_an_unstable_platform_is_refused(tmp_path, command):
+    folder = tmp_path / "top-heavy"
+    shutil.copytree(DEMO, folder)
+    text = (folder / "platform.yaml").read_text()
+    assert "centre_of_mass: [0.0, 0.0, -2.4]" in text
+    (folder / "platform.yaml").write_text(text.replace("[0.0, 0.0, -2.4]", "[0.0, 0.0, 40.0]"))
+    result = RUNNER.invoke(cli.app, [command, str(folder), "--out", str(tmp_path / "out")], env={"COLUMNS": "160"})
+    said = " ".join(result.output.split())
+    assert result.exit_code == 2 and "the platform is unstable in roll and pitch" in said, said
+    assert not (tmp_path / "out").exists()
+
+
+def test_restoring_that_a_ship_leaves_out_is_named(tmp_path):
+    shutil.copytree(DEMO, tmp_path / "ship")
+    (tmp_path / "ship" / "platform.yaml").write_text(
+        "{name: ship, water: {density: 1000.0, depth: 3.0}, members: [], mooring: {kind: none}, hydrostatics: {C44: 1e9},"
+        "rigid_body: {mass: 2e7, centre_of_mass: [0, 0, 1.0], inertia: {Ixx: 1e10, Iyy: 1e10, Izz: 1e10}}}"
+    )
+    with pytest.raises(InputError, match=r"unstable in pitch.*`hydrostatics` states what restores: C55 is left out"):
+        load_campaign(tmp_path / "ship")
+
+
+def test_a_motion_without_a_natural_period_has_no_difference():
+    _, rows = periods([PeriodComparison("sway", 1, 130.0, math.nan)])
+    assert rows == [("sway", "1", "130", "–", "–")]
 
 
 def test_command_refuses_what_cannot_be_read(tmp_path):

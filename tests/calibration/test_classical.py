@@ -20,6 +20,9 @@ from calibration.decay_analysis.linear_quadratic import (
     linear_quadratic,
 )
 from calibration.decay_analysis.model_damping import drag_coefficient, model_damping, motion_shape
+from calibration.decay_analysis.period_change import unexplained_period_change
+from calibration.fitting.fit_conclusion import period_remarks
+from calibration.result import Series, TestFit
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import linearised
 from jaxhydro.loads.base import AbstractLoad, Action
@@ -28,6 +31,24 @@ from jaxhydro.parameters import parameter
 PERIOD = 20.0
 OMEGA = 2 * math.pi / PERIOD
 TIMES = np.arange(0.0, 300.0, 0.1)
+
+
+def test_a_period_that_changes_with_the_amplitude_is_noticed():
+    """x'' + 0.02 x' + w² sin(x) = 0, a pendulum: its period grows by A²/16, that of a linear model does not."""
+
+    def swing(restoring) -> np.ndarray:
+        sizes = {"rtol": 1e-9, "atol": 1e-12, "t_eval": TIMES}
+        return solve_ivp(lambda _, y: [y[1], -0.02 * y[1] - OMEGA**2 * restoring(y[0])], (0, 300), [0.3, 0.0], **sizes).y[0]
+
+    pendulum, linear = swing(np.sin), swing(lambda x: x)
+    noisy = pendulum + np.random.default_rng(1).normal(0, 2e-4, len(TIMES))
+    found = unexplained_period_change(TIMES, noisy, linear, 2e-4)
+    assert found is not None
+    assert found.large - found.small > 0.02 > abs(found.simulated_large - found.simulated_small)
+    assert unexplained_period_change(TIMES, noisy, pendulum, 2e-4) is None
+    fit = TestFit("d", "fit", "decay", "roll", TIMES, (Series("roll", noisy, linear, 0.0, 2e-4, True),), {}, "d.csv")
+    said = period_remarks([fit])
+    assert len(said) == 1 and said[0].startswith("d: the period of roll goes from") and "jaxhydro diagnose" in said[0]
 
 
 def linear_decay(zeta: float, times: np.ndarray = TIMES) -> np.ndarray:

@@ -14,6 +14,7 @@ from PIL import Image
 from test_outputs import SCHEMAS, Page, changed, contents
 
 import jaxhydro as jh
+from calibration.commands.diagnose_command import show_diagnosis
 from calibration.discovery.diagnosis import IMPLAUSIBLE_SIZE, Diagnosis, PlausibleRange
 from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.plots import diagnosis_figures as plots
@@ -152,6 +153,23 @@ def test_a_gain_is_called_after_what_it_was_found_on(result: Diagnosis, written:
     text = " ".join(words.describe_certainty(saved, saved.missing.effects[0]))
     assert "squared error of blocks of the fitted tests left out in turn falls by 61 %" in text
     assert "held" not in text.lower() and "not fitted" not in text
+
+
+def test_the_terminal_tells_each_effect_in_three_lines(written: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Name and size; how sure; what else it could be."""
+    saved = read_diagnosis(written)
+    show_diagnosis(saved, [])
+    said = capsys.readouterr().out.splitlines()
+    for one in saved.missing.effects:
+        lines = words.effect_in_three_lines(saved, one)
+        at = said.index(lines[0])
+        assert [line for line in said[at : at + 3]] == list(lines)
+    first = words.effect_in_three_lines(saved, saved.missing.effects[0])
+    assert first[0].startswith("Coulomb friction in surge: force (81.0 ± ") and first[0].endswith(" kN")
+    assert first[1].startswith("  How sure: probability ") and "squared error of held-out tests falls by 61 %" in first[1]
+    assert first[2].startswith("  What else it could be: ")
+    bare = saved.missing.effects[0].model_copy(update={"parameters": {}})
+    assert words.effect_in_three_lines(saved, bare)[0] == "Coulomb friction in surge"
 
 
 def nothing(**changes: Any) -> Diagnosis:

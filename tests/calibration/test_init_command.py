@@ -14,8 +14,10 @@ from test_cli import run
 from calibration.campaign.load_campaign import Campaign, load_campaign
 from calibration.campaign.manifest import read_manifest
 from calibration.commands.init_command import init_campaign
+from calibration.discovery.set_up import set_up_study
 from calibration.new_campaign.column_names import channel_of, motion_in
 from calibration.new_campaign.draft_text import yaml_scalar
+from calibration.residuals.measured_seas import Options
 from jaxhydro.errors import InputError
 
 MEASURED = Path("/work/shared/measured")
@@ -38,6 +40,74 @@ def sea(regular: bool) -> pd.DataFrame:
     phase = np.random.default_rng(1).uniform(0, 2 * np.pi, len(frequency))
     wave = np.cos(2 * np.pi * frequency * time[:, None] + phase).sum(axis=1)
     return pd.DataFrame({"time_s": time, "surge_m": 0.5 * wave, "heave_m": 0.4 * wave, "pitch_deg": wave, "wave_m": wave})
+
+
+def test_text_among_numbers_says_what_to_do(tmp_path):
+    table = record("surge-1")
+    table["operator"] = 1.0
+    table = table.astype(object)
+    table.loc[3, "operator"] = "tea"
+    table.to_csv(tmp_path / "one.csv", index=False)
+    assert campaign(tmp_path / "a", tmp_path / "one.csv").records[0].degree_of_freedom == "surge"
+    table.loc[5, "surge_m"] = "lost"
+    table.to_csv(tmp_path / "two.csv", index=False)
+    with pytest.raises(InputError, match=r"row 7, column surge_m: expected a number, found 'lost'. Leave the cell empty"):
+        campaign(tmp_path / "b", tmp_path / "two.csv")
+    assert not (tmp_path / "b").exists()
+
+
+def test_still_water_before_a_push_is_zero(tmp_path):
+    """A platform that rests off zero for 30 s, and is then pushed: its readings at rest are still water."""
+    time = np.arange(0.0, 150.0, 0.1)
+    moved = np.maximum(time - 30.0, 0.0)
+    table = pd.DataFrame(
+        {"t": time, "x": 7.0 + 0.01 * np.sin(time), "phi": 2.0 - 8 * np.exp(-0.01 * moved) * np.sin(0.6 * moved)}
+    )
+    table.to_csv(tmp_path / "roll.csv", index=False)
+    made = campaign(tmp_path / "made", tmp_path / "roll.csv", platform="ship-section")
+    window = made.manifest.zero.window
+    assert window[0] == 0 and 20 < window[1] < 30
+    record = made.records[0]
+    assert abs(np.mean(record.values["surge"])) < 0.02 and abs(np.mean(record.values["roll"])) < np.radians(0.5)
+    record_of_demo = tmp_path / "surge.csv"
+    shutil.copyfile(DEMO / "surge-1.csv", record_of_demo)  # let go away from rest
+    assert campaign(tmp_path / "other", record_of_demo).manifest.zero is None
+
+
+def test_a_ship_that_nothing_holds_up_can_be_diagnosed(tmp_path):
+    """Its weight is not varied: with more of it there would be no equilibrium."""
+    time = np.arange(0.0, 30.0, 0.05)
+    pd.DataFrame({"t": time, "phi_deg": 8 * np.exp(-0.02 * time) * np.cos(2.5 * time)}).to_csv(tmp_path / "a.csv", index=False)
+    ship = tmp_path / "ship.yaml"
+    ship.write_text(
+        "{name: ship, water: {density: 1000.0, depth: 3.0}, members: [], mooring: {kind: none}, hydrostatics: {C44: 822.0},"
+        "rigid_body: {mass: 994.0, centre_of_mass: [0, 0, -0.03], inertia: {Ixx: 115.7, Iyy: 1376, Izz: 1376}},"
+        "added_mass: {A44: 16.0}, linear_damping: {B44: 5.0}}"
+    )
+    made = campaign(tmp_path / "made", tmp_path / "a.csv", platform=str(ship))
+    labels = set_up_study(made, Options()).study.space.labels
+    assert "mass_properties.inertia_roll" in labels and "mass_properties.mass" not in labels
+
+
+def test_coefficients_of_the_platform_are_the_examples(tmp_path):
+    init_campaign(tmp_path / "made", "volturnus-s", None, [])
+    text = (tmp_path / "made" / "campaign.yaml").read_text()
+    written = "\n".join(line.removeprefix("# ") for line in text[text.index("# calibrate:") :].splitlines())
+    (tmp_path / "made" / "campaign.yaml").write_text(text[: text.index("# calibrate:")] + written)
+    for dof in ("surge", "heave", "pitch"):
+        shutil.copyfile(DEMO / f"{dof}-1.csv", tmp_path / "made" / f"{dof}-1.csv")
+    fit = read_manifest(tmp_path / "made")[0].calibrate
+    assert set(fit.bounds) == set(fit.priors) == {"column.Ca_t"} and fit.free and fit.fixed
+
+
+def test_an_embedded_campaign_is_found_by_its_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert len(load_campaign("volturnus-s-decays").records) == 9
+    with pytest.raises(InputError, match="no such folder"):
+        load_campaign("volturnus-s-decay")
+    (tmp_path / "volturnus-s-decays").mkdir()
+    with pytest.raises(InputError, match=r"a folder without campaign\.yaml"):  # one's own comes first
+        load_campaign("volturnus-s-decays")
 
 
 # --- names of columns

@@ -4,12 +4,14 @@ import base64
 import json
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
+from fake_calibration import small
 from fake_simulation import PERIOD, comparison, hull, motion, written_comparison, written_sea, written_waves
 from test_outputs import Page, follows
 
@@ -17,6 +19,7 @@ from calibration.formatting import number
 from calibration.report.interactive import MotionView, motion_view, packed, plotly_script, thinned
 from calibration.report.recorded_motion import read_motion
 from calibration.report.write_report import write_report
+from calibration.results.write_calibration import write_calibration
 from jaxhydro.cli.simulation_files import write_motion
 from jaxhydro.errors import InputError
 from jaxhydro.hull.outline import element_outlines
@@ -138,6 +141,17 @@ def test_series_end_with_the_test_and_the_stretch_is_about_the_highest_crest(tmp
     assert stretch.times[-1] - stretch.times[0] == pytest.approx(10 * PERIOD, rel=0.05) and len(stretch.times) > 60
     assert set(stretch.poses) == {"measured", "simulated"} and stretch.poses["measured"].shape == (len(stretch.times), 6)
     np.testing.assert_allclose(stretch.poses["measured"][:, 2], 0.3 * np.cos(2 * np.pi * stretch.times / PERIOD), atol=0.01)
+
+
+def test_offsets_that_were_taken_off_are_told(tmp_path: Path) -> None:
+    fitted = small()
+    first = fitted.tests[0]
+    moved = replace(first, series=tuple(replace(one, offset=0.25 * (one.channel == "surge")) for one in first.series))
+    write_calibration(replace(fitted, tests=(moved, *fitted.tests[1:])), tmp_path, figures=False)
+    found = read_motion(tmp_path)
+    assert found is not None and found.offsets["surge"] == pytest.approx(0.25)
+    view = motion_view(tmp_path)
+    assert isinstance(view, str) or "taken off the measured series: up to 0.25 m in surge" in " ".join(view.notes)
 
 
 def test_a_folder_without_series_has_no_interactive_part(tmp_path: Path) -> None:

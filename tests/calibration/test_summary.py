@@ -168,6 +168,25 @@ def test_warnings_that_differ_by_numbers_alone_are_one() -> None:
     assert group_findings(tiny)[0].message == "written to 1e-05 to 0.01 s, 12.5 in all"
 
 
+# --- classical damping
+
+
+def test_damping_far_outside_its_interval_is_named() -> None:
+    def decay(p: float, q: float) -> dict[str, Any]:
+        terms = {
+            name: {"measured": 1.0, "half_width": 0.1, "simulated": one} for name, one in (("linear", p), ("quadratic", q))
+        }
+        about = {"use": "fit", "kind": "decay", "file": "a.csv"}
+        return about | {"linear_quadratic": {"period": 10.0, "unit": "rad", **terms}}
+
+    content = saved({}, SURE).model_dump(mode="json", exclude_none=True)
+    near = content | {"tests": {"a": decay(1.14, 0.86)}}
+    assert tables.damping_outside(CalibrationFile.model_validate(near)) == ""
+    far = content | {"tests": {"a": decay(1.16, 0.8), "b": decay(1.0, 2.0)}}
+    said = tables.damping_outside(CalibrationFile.model_validate(far))
+    assert said.startswith("Far outside the measured interval: p and q of a and q of b.") and "jaxhydro diagnose" in said
+
+
 # --- the truth
 
 
@@ -177,7 +196,7 @@ def test_calibrated_values_beside_true_ones() -> None:
     one = saved({}, parameters, truth=truth)
     _, rows = tables.comparison_with_truth(one)
     assert [row[0] for row in rows] == list(truth) and rows[0][4:] == ("-4.8 %", "-0.5 sd")
-    assert rows[2][2:] == ("not determined", "", "–", "–") and rows[3][2] == "not calibrated" and rows[4][4] == "–"
+    assert rows[2][2:] == ("(1.00) not determined", "", "–", "–") and rows[3][2] == "not calibrated" and rows[4][4] == "–"
     assert tables.agreement_with_truth(one) == (
         "2 of 5 coefficients lie within 2 standard deviations of the true values; the farthest is 3.0 away."
     )

@@ -13,6 +13,7 @@ from jaxhydro.analysis.spectral import (
     PowerSpectrum,
     band_integral,
     band_pass,
+    band_weights,
     bands,
     exceedance,
     power_spectrum,
@@ -72,9 +73,12 @@ def test_a_band_is_taken_out_without_moving_it(count: int) -> None:
 
 
 def test_white_noise_is_flat() -> None:
-    """Density 2 sigma^2 dt; the scatter of a mean over 6 half-overlapped Hann segments is about 1/sqrt(6 * 36/19 / 2)."""
+    """Density 2 sigma^2 dt; the scatter of a mean over 6 half-overlapped Hann segments is about 1/sqrt(6 * 36/19 / 2).
+
+    A seventh segment reaches the end of the record.
+    """
     spectrum = power_spectrum(TIMES, NOISE)
-    assert spectrum.segments == 6 and spectrum.frequency[1] == pytest.approx(0.001)
+    assert spectrum.segments == 7 and spectrum.frequency[1] == pytest.approx(0.001)
     assert spectrum.resolution == pytest.approx(0.0015, rel=1e-3)  # Hann: 1.5 bins
     level = spectrum.density[5:-5]
     assert level.mean() == pytest.approx(2 * STEP, rel=0.03)
@@ -86,6 +90,24 @@ def test_a_short_record_has_one_segment() -> None:
     spectrum = power_spectrum(TIMES[:1000], NOISE[:1000])
     assert spectrum.segments == 1
     assert band_integral(spectrum, 0.0, 2.0) == pytest.approx(NOISE[:1000].var(), rel=1e-12)
+
+
+@pytest.mark.parametrize("duration", [1000.5, 1250.0, 1499.0, 1700.0, 3600.0])
+def test_segments_reach_the_end_of_the_record(duration: float) -> None:
+    """A burst at the end is in the spectrum, and in its quadratic form alike."""
+    count = round(duration / STEP)
+    x = np.where(np.arange(count) > 0.97 * count, np.cos(2 * math.pi * 0.1 * STEP * np.arange(count)), 0.0)
+    found = power_spectrum(TIMES[:count], x)
+    weights = band_weights(count, STEP, 0.05, 0.15)
+    assert found.segments == len(weights.starts)
+    assert count - (weights.starts[-1] + len(weights.window)) < found.segments
+    energy = band_integral(found, 0.05, 0.15)
+    assert energy > 0 and weights.integral(x) == pytest.approx(energy, rel=1e-9)
+
+
+def test_two_segments_that_are_almost_one_make_no_coherence() -> None:
+    with pytest.raises(ValueError, match="two segments or more expected"):
+        transfer_function(TIMES[:4800], NOISE[:4800], NOISE[4800:9600], segment=1000.0)
 
 
 @pytest.mark.parametrize("segment, error", [(None, 1e-3), (300.0, 2e-3), (3600.0, 1e-3)])

@@ -105,3 +105,16 @@ def test_a_line_that_is_stretched_by_much_is_told() -> None:
     (remark,) = [one for one in platform(short).remarks if "stretched" in one.text]
     assert remark.warning and "line 1, 2, 3 is stretched by up to 11%" in remark.text
     assert not any("stretched" in one.text for one in volturnus().remarks)
+
+
+def test_units_suit_the_platform(tmp_path: Path) -> None:
+    """A model of a ship in N m, a wind platform in MN m; what is rounding is 0."""
+    ship = tmp_path / "ship.yaml"
+    ship.write_text(
+        "{name: ship, water: {density: 1000.0, depth: 3.0}, members: [], mooring: {kind: none}, hydrostatics: {C44: 822.0},"
+        "rigid_body: {mass: 994.0, centre_of_mass: [0, 0, -0.0324], inertia: {Ixx: 115.7, Iyy: 1376, Izz: 1376}}}"
+    )
+    status, small = statics(str(ship))
+    assert status == 0 and "Stiffness at rest (N/m, N, N m)" in small and "heave (kN)" in small and "roll (N m)" in small
+    assert " roll 0 0 0 822 0 0 " in small
+    assert "Stiffness at rest (MN/m, MN, MN m)" in statics("volturnus-s")[1]

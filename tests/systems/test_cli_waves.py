@@ -16,6 +16,7 @@ from calibration.commands import calibrate_command as of_campaigns
 from jaxhydro.analysis.sea_statistics import bands_of, summary, tables
 from jaxhydro.cli import app as cli
 from jaxhydro.cli import arguments, sea_command, sea_options
+from jaxhydro.dynamics.requested_sea import usual_transient
 from jaxhydro.platform.build import model_of
 from jaxhydro.plots import seas as sea_plot
 from jaxhydro.waves.irregular import spectrum_components
@@ -209,7 +210,7 @@ BAD = [
     ([*SEA, "--stretching", "delta"], "'delta' is not one of 'none', 'vertical'"),
     ([*SEA, "--duration", 0], "--duration: a number > 0 expected, found 0"),
     ([*SEA, "--duration", 300, "--transient", 300], "--transient: from 0 to less than the duration, 300 s, expected"),
-    ([*SEA, "--duration", 4], "100 samples or more after the transient of 1 s"),
+    ([*SEA, "--duration", 4], "--duration: expected 14 s or more, for 100 samples after the transient of 1 s"),
     ([*SEA, "--wave", "tank.csv"], "--hs: --wave takes the sea from a record: not both"),
     ([*SEA, "--wave-height", 2, "--wave-period", 9], "regular waves or an irregular sea, not both"),
     ([*SEA, "--wave-column", "a"], "--wave-column: a record expected with it"),
@@ -280,3 +281,13 @@ def test_a_campaign_is_handed_on(tmp_path, monkeypatch) -> None:
     for option in ("--hs", "--wave-height", "--duration", "--transient", "--wave", "--elements", "--heading", "--dt"):
         text = run("simulate", DEMO, option, 3, "--out", tmp_path, status=2)
         assert f"{option}: it goes with a platform, not with a campaign" in text
+
+
+@pytest.mark.parametrize(
+    ("kept", "transient", "pace"), [(1385.0, None, 1.0), (10.1, None, 1.0), (3000.0, None, 1.0), (100.0, 600.0, 1.0)]
+)
+def test_a_duration_that_is_advised_is_enough(kept: float, transient: float | None, pace: float) -> None:
+    advised = sea_command.duration_of(kept, transient, pace)
+    left_out = usual_transient(advised, pace) if transient is None else transient
+    assert kept <= advised - left_out < 1.15 * kept + 0.1 * left_out
+    assert "e" not in f"{advised:g}" and len(f"{advised:g}".strip("0").replace(".", "")) <= 2  # short enough to type

@@ -87,14 +87,15 @@
       });
       const room = 0.08 * Math.max(...range.map(([a, b]) => b - a)), ends = range.map(([a, b]) => [a - room, b + room]);
       ends[2] = [Math.min(ends[2][0], -room), Math.max(ends[2][1], room)];
-      const away = Math.min(1.7, Math.max(1, 620 / view.clientWidth));
+      const height = Math.min(430, Math.max(260, Math.round(0.95 * view.clientWidth)));
+      const away = Math.min(1.7, Math.max(1, (1.05 * height) / view.clientWidth));
       const [x, y, z] = pose(0), [[x0, x1], [y0, y1]] = ends;
       const hull = { type: "mesh3d", x, y, z, ...faces, color: "#c3b06a", flatshading: true, hoverinfo: "skip",
         lighting: { ambient: 0.6, diffuse: 0.7, specular: 0.1 } };
       const water = { type: "mesh3d", x: [x0, x1, x1, x0], y: [y0, y0, y1, y1], z: [0, 0, 0, 0], i: [0, 0], j: [1, 2], k: [2, 3],
         color: COLOURS.wave, opacity: 0.3, hoverinfo: "skip" };
       const axis = (name, limits) => ({ title: { text: name + " (m)" }, range: limits, gridcolor: "#e4e6ea", showbackground: false });
-      const layout = { height: 430, margin: { l: 0, r: 0, t: 0, b: 0 }, font, paper_bgcolor: "#fff", uirevision: "kept",
+      const layout = { height, margin: { l: 0, r: 0, t: 0, b: 0 }, font, paper_bgcolor: "#fff", uirevision: "kept",
         scene: { xaxis: axis("x", ends[0]), yaxis: axis("y", ends[1]), zaxis: axis("z", ends[2]), aspectmode: "data",
           camera: { eye: { x: 0.95 * away, y: -1.85 * away, z: 0.6 * away }, center: { x: 0, y: 0, z: -0.12 } } } };
       return Plotly.react(view, [hull, water], layout, { responsive: true, displaylogo: false }).then(show);

@@ -1,0 +1,60 @@
+"""Change of a decay's period with its amplitude, measured against simulated."""
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy  # scipy.stats is imported when it is used
+
+from jaxhydro.dynamics.response import decay_cycles
+
+MIN_CYCLES = 6  # whole cycles of a decay whose early and late periods are compared
+MIN_CHANGE = 1e-3  # of the period: what is smaller matters to nobody
+MIN_DEVIATIONS = 4.0  # standard errors of a slope over the amplitude
+
+
+class PeriodChange(NamedTuple):
+    """Mean periods of the first and of the last half of a decay's cycles (s).
+
+    Attributes:
+        large: Measured, at large amplitude.
+        small: Measured, at small amplitude.
+        simulated_large: Simulated, at large amplitude.
+        simulated_small: Simulated, at small amplitude.
+    """
+
+    large: float
+    small: float
+    simulated_large: float
+    simulated_small: float
+
+
+def unexplained_period_change(
+    time: np.ndarray, measured: np.ndarray, simulated: np.ndarray, noise: float = 0.0
+) -> PeriodChange | None:
+    """Compare how the period changes while a decay dies out, measured and simulated.
+
+    Args:
+        time: (k,) times (s).
+        measured: (k,) measured motion about zero (m or rad).
+        simulated: (k,) simulated motion about zero (m or rad).
+        noise: Standard deviation of the noise on `measured` (m or rad).
+
+    Returns:
+        The periods, where the measured one changes otherwise than the simulated one by 0.1 % of it or more, and the slope of
+        their difference over the amplitude is four standard errors or more. Else None.
+    """
+    cycles, other = decay_cycles(time, measured, noise), decay_cycles(time, simulated, noise)
+    count = min(len(cycles.period), len(other.period)) // 2
+    if count < MIN_CYCLES:
+        return None
+    # crests and troughs of a motion off zero alternate: whole cycles do not
+    real, model, amplitude = (
+        half_cycles[: 2 * count].reshape(count, 2).mean(axis=1)
+        for half_cycles in (cycles.period, other.period, cycles.amplitude)
+    )
+    found = PeriodChange(*(float(half.mean()) for one in (real, model) for half in np.split(one, [count // 2])))
+    change = (found.large - found.small) - (found.simulated_large - found.simulated_small)
+    slope = scipy.stats.linregress(amplitude, real - model)
+    if abs(change) < MIN_CHANGE * float(real.mean()) or abs(slope.slope) < MIN_DEVIATIONS * slope.stderr:
+        return None
+    return found
