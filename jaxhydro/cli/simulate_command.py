@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 import jaxhydro
-from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
+from jaxhydro.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.cli.console import complain, say, table
 from jaxhydro.cli.simulation_files import Motion, write_motion
 from jaxhydro.dynamics.model import Model

@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
-from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
+from jaxhydro.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.requested_sea import RequestedSea
 from jaxhydro.dynamics.sea_of_request import build_sea

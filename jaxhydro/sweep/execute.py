@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
-from jaxhydro.cli.calibrated_model import calibration_file
+from jaxhydro.calibrated_model import calibration_file
 from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.errors import InputError, Problem, read_yaml

@@ -26,7 +26,7 @@ from calibration.results.write_calibration import write_calibration
 from calibration.results.write_laws import document as document_of_laws
 from calibration.results.write_laws import write_laws
 from calibration.vocabulary import LAW_NAMES
-from jaxhydro.cli.calibrated_model import with_calibration
+from jaxhydro.calibrated_model import with_calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
 from jaxhydro.loads.sea_state_law import reference_of as reference_of_loads

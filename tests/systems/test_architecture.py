@@ -92,7 +92,7 @@ def inside(name: str, folders: set[str]) -> bool:
 
 
 def test_who_may_import_whom() -> None:
-    """The contracts in pyproject.toml: layers, no cycles, calibration known to the command line alone."""
+    """The contracts in pyproject.toml: layers, no cycles, who imports calibration and who the command line."""
     run = subprocess.run(
         [str(Path(sys.executable).parent / "lint-imports"), "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False
     )
