@@ -14,7 +14,8 @@ from calibration.campaign.records import Record
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import AbstractGroupedResidual
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.statics import characteristic_length, equilibrium, held_at, linearised, strain_energy
+from jaxhydro.dynamics.natural_modes import strain_energy
+from jaxhydro.dynamics.statics import characteristic_length, equilibrium, held_at, linearised
 from jaxhydro.environment import DOFS
 
 MODE_SHARE = 0.7  # of a mode's largest share of strain energy: surge and sway of one period may come mixed
