@@ -88,7 +88,8 @@ def lower(test: Any) -> dict[str, Any]:
     """Simulated surge `KEEL` above still water: band integrals, mean, transfer function; and what the point that was measured
     does in pitch's resonance, surge over pitch and sway over roll (m/rad, the real part), with coherence."""
     from calibration.residuals.sea_errors import channels, density
-    from jaxhydro.analysis.spectral import band_integral, bands, transfer_function
+    from jaxhydro.analysis.spectral import band_integral, bands
+    from jaxhydro.analysis.transfer_functions import transfer_function
 
     time, both = test.fit.time, channels(test)
     seen = both["surge"][1] + KEEL * np.radians(both["pitch"][1])
@@ -114,7 +115,7 @@ def lower(test: Any) -> dict[str, Any]:
 def spectra(test: Any) -> dict[str, Any]:
     """Of measured and simulated: mean, standard deviation, spectra, and transfer functions from the measured wave."""
     from calibration.residuals.sea_errors import channels, density
-    from jaxhydro.analysis.spectral import transfer_function
+    from jaxhydro.analysis.transfer_functions import transfer_function
 
     found: dict[str, Any] = {"mean": {}, "deviation": {}, "density": {}, "response": {}}
     time, both = test.fit.time, channels(test)

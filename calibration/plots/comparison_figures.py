@@ -12,7 +12,7 @@ from calibration.plots.calibration_figures import write_band_error
 from calibration.residuals.measured_seas import SeaTest
 from calibration.residuals.sea_errors import channels, density, in_bands, moving
 from jaxhydro.analysis.sea_statistics import bands_of
-from jaxhydro.analysis.spectral import transfer_function
+from jaxhydro.analysis.transfer_functions import transfer_function
 from jaxhydro.files import safe_name
 from jaxhydro.plots.style import MEASURED, SIMULATED, header, stack
 from jaxhydro.units import unit_of

@@ -8,8 +8,9 @@ import numpy as np
 import rainflow
 from jaxtyping import Float
 
+from jaxhydro.analysis.record_statistics import Statistics, statistics
 from jaxhydro.analysis.sea_statistics import bands_of, still
-from jaxhydro.analysis.spectral import Statistics, band_integral, power_spectrum, statistics
+from jaxhydro.analysis.spectral import band_integral, power_spectrum
 from jaxhydro.units import unit_of
 
 STATISTICS = Statistics._fields
