@@ -11,21 +11,14 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
-from calibration.discovery.diagnosis import (
-    IMPLAUSIBLE_SIZE,
-    Diagnosis,
-    Effect,
-    Evidence,
-    Finding,
-    Outcome,
-    PlausibleRange,
-)
+from calibration.discovery.diagnosis import Diagnosis, Finding, Outcome
 from calibration.discovery.doubts import doubted_effects, doubts_of
 from calibration.discovery.effects.candidates import Candidate, with_candidates, with_effects
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import predict_gain
 from calibration.discovery.latent_force.recover_force import latent_of
 from calibration.discovery.predictions import predictions_of
+from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE, Effect, Evidence, PlausibleRange
 from calibration.discovery.residual_anatomy import anatomy, signature
 from calibration.fitting.fit_conclusion import records_not_followed
 from calibration.residuals.measured_seas import peak_period

@@ -21,8 +21,9 @@ from calibration.residuals.measured_seas import Options, moving_channels, sea_st
 from calibration.residuals.run_segments import samples_after_transient
 from jaxhydro.dynamics.integrate import clock
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.simulate import excursion_of, memory_step
+from jaxhydro.dynamics.simulate import excursion_of
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
+from jaxhydro.dynamics.time_steps import memory_step
 from jaxhydro.environment import DOFS
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import IrregularSea

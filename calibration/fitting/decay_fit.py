@@ -20,8 +20,8 @@ from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.decays import DecayProblem, crossing_period, first_guess, gather_decays
 from calibration.result import Calibration, TestFit
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.simulate import memory_step
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
+from jaxhydro.dynamics.time_steps import memory_step
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
 from jaxhydro.errors import Problem as Wrong

@@ -9,8 +9,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from calibration.discovery.diagnosis import Diagnosis, Effect
+from calibration.discovery.diagnosis import Diagnosis
 from calibration.discovery.effects.effect_names import effect_in_words
+from calibration.discovery.reported_effects import Effect
 from calibration.formatting import percent
 from calibration.plots.calibration_figures import BAND_COLOURS, DECADES, MAX_FREQUENCY
 from calibration.plots.search_figures import MIN_SHOWN_GAIN, anatomy_figure, latent_figure, scores_figure

@@ -28,9 +28,9 @@ from jaxhydro.dynamics.conventions import allowed_values
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.sea_of_request import share_within
-from jaxhydro.dynamics.simulate import largest_step
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.dynamics.table_ranges import heading_fault
+from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.hull.hull import Hull

@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from calibration.discovery.diagnosis import Diagnosis, Effect, Finding, LatentForce, Prediction, Rejected, Score
+from calibration.discovery.diagnosis import Diagnosis, Finding, Prediction, Rejected, Score
 from calibration.discovery.refusal import RefusalKind
+from calibration.discovery.reported_effects import Effect
+from calibration.discovery.reported_forces import LatentForce
 from calibration.result import BandError, Calibration, Series, TestFit
 from calibration.results import write_calibration as outputs
 from calibration.results.diagnosis_file import (

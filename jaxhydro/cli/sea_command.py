@@ -17,7 +17,8 @@ from jaxhydro.dynamics.natural_modes import Modes
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, RequestedSea
 from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.sea_of_request import build_sea, impossible, outside
-from jaxhydro.dynamics.simulate import free_decay, largest_step
+from jaxhydro.dynamics.simulate import free_decay
+from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.directional_spectrum import WaveSystem

@@ -11,8 +11,9 @@ from jaxtyping import Complex, Float
 
 from jaxhydro.dynamics.integrate import Kernel, clock, integrate
 from jaxhydro.dynamics.model import Model, State
-from jaxhydro.dynamics.simulate import excursion_of, farthest, steps_in
+from jaxhydro.dynamics.simulate import excursion_of, farthest
 from jaxhydro.dynamics.statics import EquilibriumError, equilibrium
+from jaxhydro.dynamics.time_steps import steps_in
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.preparation import Preparation

@@ -16,8 +16,9 @@ from jaxhydro.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.requested_sea import RequestedSea
 from jaxhydro.dynamics.sea_of_request import build_sea
-from jaxhydro.dynamics.simulate import largest_step, simulate
+from jaxhydro.dynamics.simulate import simulate
 from jaxhydro.dynamics.statics import EquilibriumError
+from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.loads import AnyLines

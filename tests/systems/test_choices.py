@@ -18,8 +18,8 @@ from calibration.residuals.measured_seas import Options
 from jaxhydro.choices import UnknownName, check, nearest, unknown
 from jaxhydro.dynamics.conventions import Conventions, allowed_values
 from jaxhydro.dynamics.integrate import Method, clock
-from jaxhydro.dynamics.simulate import default_step, memory_step
 from jaxhydro.dynamics.statics import stable_modes
+from jaxhydro.dynamics.time_steps import default_step, memory_step
 from jaxhydro.interop.wamit_tables import to_omega
 from jaxhydro.loads import LOADS
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents

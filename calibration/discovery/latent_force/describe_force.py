@@ -9,9 +9,9 @@ import numpy as np
 from scipy import signal
 
 from calibration.campaign.signals import wave_height
-from calibration.discovery.diagnosis import ForceCoherence, ForceExcerpt, LatentForce, Law, LawTerm
 from calibration.discovery.latent_force.force_law import LAG_RATIOS, LAGGED_TERMS, columns_of, squared_envelope
 from calibration.discovery.latent_force.recovered_force import RecoveredForce
+from calibration.discovery.reported_forces import ForceCoherence, ForceExcerpt, LatentForce, Law, LawTerm
 from calibration.formatting import listed, number, percent, quantity, readable_unit
 from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period
 from jaxhydro.analysis.spectral import SEGMENT

@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import hilbert
 
-from calibration.discovery.diagnosis import Law, LawTerm
 from calibration.discovery.latent_force.recovered_force import RecoveredForce
+from calibration.discovery.reported_forces import Law, LawTerm
 from jaxhydro.environment import DOFS
 
 MAX_TERMS = 3  # terms of a law
