@@ -20,8 +20,8 @@ from calibration.residuals.decays import DecayProblem, crossing_period, gather_d
 from calibration.residuals.measured_seas import Options, moving_channels, sea_step, seas_of
 from calibration.residuals.run_segments import samples_after_transient
 from jaxhydro.dynamics.integrate import clock
+from jaxhydro.dynamics.irregular_simulation import excursion_of
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.simulate import excursion_of
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
 from jaxhydro.dynamics.time_steps import memory_step
 from jaxhydro.environment import DOFS

@@ -9,8 +9,8 @@ import numpy as np
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from jaxhydro.analysis.spectral import power_spectrum
+from jaxhydro.dynamics.irregular_simulation import IrregularSimulation, simulate_irregular
 from jaxhydro.dynamics.model import Model, State
-from jaxhydro.dynamics.simulate import IrregularSimulation, simulate_irregular
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import SeaState, peak_period

@@ -24,9 +24,9 @@ from calibration.residuals.run_segments import run_segments, samples_after_trans
 from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.analysis.spectral import SEGMENT, band_weights
 from jaxhydro.dynamics.integrate import integrate
+from jaxhydro.dynamics.irregular_simulation import farthest
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import observe
-from jaxhydro.dynamics.simulate import farthest
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.environment import DOFS
 from jaxhydro.waves.sea_state import SeaState

@@ -27,9 +27,9 @@ from calibration.residuals.abstract_residual import AbstractResidual, Unknowns
 from calibration.residuals.blocks import Blocks, RunInBlocks
 from calibration.residuals.seas import SeaProblem, SeaRun
 from jaxhydro.dynamics.integrate import EXTRA_STEPS, Grid, integrate, states
+from jaxhydro.dynamics.irregular_simulation import farthest
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import motion_behind, observe
-from jaxhydro.dynamics.simulate import farthest
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
 from jaxhydro.environment import DOFS
 

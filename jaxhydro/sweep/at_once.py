@@ -10,8 +10,8 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from jaxhydro.dynamics.integrate import Kernel, clock, integrate
+from jaxhydro.dynamics.irregular_simulation import excursion_of, farthest
 from jaxhydro.dynamics.model import Model, State
-from jaxhydro.dynamics.simulate import excursion_of, farthest
 from jaxhydro.dynamics.statics import EquilibriumError, equilibrium
 from jaxhydro.dynamics.time_steps import steps_in
 from jaxhydro.integrators.mixed_precision import Precision
