@@ -171,8 +171,8 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from calibration.plots.comparison_figures import LOW_BAND, WAVE_BAND
     from jaxhydro.analysis.sea_statistics import bands_of
+    from jaxhydro.plots.spectrum_axes import BAND_COLOURS
     from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, style
 
     with style():
@@ -184,7 +184,7 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
             other = found["fitted"]["seas"][name]
             for ax, (channel, unit) in zip(axes[:, column], UNITS.items(), strict=True):
                 for band, (low, high) in bands_of(channel, sea["tp"]).items():
-                    ax.axvspan(low, high, color=LOW_BAND if band == "low_frequency" else WAVE_BAND, lw=0, zorder=0.5)
+                    ax.axvspan(low, high, color=BAND_COLOURS[band], lw=0, zorder=0.5)
                 f, (measured, simulated) = sea["frequency"], sea["density"][channel]
                 artists["measured"] = ax.plot(f, measured, color=MEASURED, lw=1.3)[0]
                 artists[f"simulated, {FITTED}"] = ax.plot(f, other["density"][channel][1], color=BEFORE, lw=0.8)[0]

@@ -16,12 +16,12 @@ from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.dynamics.response import Cycles, decay_cycles
 from jaxhydro.environment import DOFS
 from jaxhydro.files import safe_name
+from jaxhydro.plots.spectrum_axes import Density, draw_densities, shade_bands
 from jaxhydro.plots.style import BEFORE, GREY, MEASURED, SIMULATED, WIDTH, header, stack
 from jaxhydro.units import for_people, unit_of
 
 _USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
-MAX_FREQUENCY, DECADES = 0.2, 4.5  # Hz that spectra are drawn to, and of their largest value downwards
-BAND_COLOURS = ("#ece3cf", "#dbe9ee")
+MAX_FREQUENCY = 0.2  # Hz, that spectra are drawn to
 CLEAR_AMPLITUDE = 25  # times the noise: an amplitude from which decrement and period are well measured
 
 
@@ -64,23 +64,35 @@ def spectra_figure(test: TestFit) -> Figure:
     figure, axes = stack([1.15] * len(shown))
     artists: dict[str, Artist] = {}
     for ax, series in zip(axes, shown):
-        channel, top, before = series.channel, 0.0, test.start.get(series.channel)
-        for shade, band in zip(BAND_COLOURS, test.bands[channel].values()):
-            ax.axvspan(band.low, band.high, color=shade, lw=0, zorder=0.5)
+        channel, before = series.channel, test.start.get(series.channel)
+        shade_bands(ax, {name: (band.low, band.high) for name, band in test.bands[channel].items()})
+        for band in test.bands[channel].values():
             write_band_error(ax, band.low, band.high, band.after)
-        rows = [("measured", series.measured, MEASURED, 1.5), ("calibrated", series.simulated, SIMULATED, 0.9)]
-        for label, values, colour, size in [*rows, *([("before", before, BEFORE, 0.9)] if before is not None else [])]:
-            found = power_spectrum(test.time, for_people(channel, values))
-            seen = (found.frequency > 0) & (found.frequency <= MAX_FREQUENCY)
-            artists[label] = ax.plot(found.frequency[seen], found.density[seen], color=colour, lw=size)[0]
-            top = max(top, float(found.density[seen].max()))
-        ax.set_yscale("log")
-        ax.set_ylim(top * 10**-DECADES, 2.5 * top)
-        ax.set_xlim(0, MAX_FREQUENCY)
-        ax.set_ylabel(f"{channel.capitalize()}\n({unit_of(channel)}²/Hz)")
+        densities = [
+            motion_density("measured", test, channel, series.measured, MEASURED, 1.5),
+            motion_density("calibrated", test, channel, series.simulated, SIMULATED, 0.9),
+        ]
+        if before is not None:
+            densities.append(motion_density("before", test, channel, before, BEFORE, 0.9))
+        artists |= draw_densities(ax, channel, densities, MAX_FREQUENCY)
     axes[-1].set_xlabel("Frequency (Hz)")
     header(figure, f"{test.id} ({_USE[test.use]})", artists)
     return figure
+
+
+def motion_density(label: str, test: TestFit, channel: str, values: np.ndarray, colour: str, width: float) -> Density:
+    """Spectral density of a motion of a test, to draw.
+
+    Args:
+        label: Name in the legend.
+        test: The test.
+        channel: The motion.
+        values: Its record (m, rad), (t,).
+        colour: Colour of the line.
+        width: Width of the line (points).
+    """
+    spectrum = power_spectrum(test.time, for_people(channel, values))
+    return Density(label, spectrum.frequency, spectrum.density, colour, width)
 
 
 def write_band_error(ax: Axes, low: float, high: float, error: float) -> None:

@@ -7,14 +7,13 @@ import numpy as np
 
 from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.analysis.spectral import SEGMENT, power_spectrum
+from jaxhydro.plots.spectrum_axes import Density, draw_densities, shade_bands
 from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WAVE, header, stack
 from jaxhydro.units import unit_of
 
 WINDOW = 200.0  # s, of which the waves can be told apart at half a page
 MIN_SEGMENT = 400.0  # s, of the segments of a spectrum
 PANEL_HEIGHT = 1.01  # inches of a panel
-DECADES = 4.5  # of a spectrum, under its largest value
-LOW_BAND, WAVE_BAND = "#e9d9bd", "#d5e6ea"
 Figure = Any
 
 
@@ -79,21 +78,11 @@ def spectra_figure(
     artists: dict[str, Any] = {}
     for ax, name in zip(axes, names, strict=True):
         spectrum = power_spectrum(time, channels[name], min(SEGMENT, max(0.5 * (time[-1] - time[0]), MIN_SEGMENT)))
-        seen = (spectrum.frequency <= highest) & (spectrum.frequency > 0)
-        f, density = spectrum.frequency[seen], spectrum.density[seen]
-        for band, (low, high) in bands_of(name, peak_period).items():
-            label, colour = ("low frequency", LOW_BAND) if band == "low_frequency" else ("wave frequency", WAVE_BAND)
-            artists[label] = ax.axvspan(low, high, color=colour, lw=0, zorder=0.5)
+        artists |= shade_bands(ax, bands_of(name, peak_period))
         if name == "wave" and target is not None:
+            f = spectrum.frequency[(spectrum.frequency > 0) & (spectrum.frequency <= highest)]
             (artists["spectrum asked for"],) = ax.plot(f, np.maximum(target(f), 1e-300), color=GREY, lw=0.9, ls=(0, (3, 1.2)))
-        ax.plot(f, density, color=_colour(name), lw=0.7)
-        ax.set_yscale("log")
-        top = max(float(density.max()), 1e-30)
-        ax.set_ylim(top * 10**-DECADES, top * 2.5)
-        ax.set_yticks([10.0**n for n in range(-12, 9) if top * 10**-DECADES <= 10.0**n <= top * 2.5][::2])
-        ax.minorticks_off()
-        ax.set_ylabel(f"{name.capitalize()}\n({unit_of(name)}²/Hz)")
-        ax.set_xlim(0, highest)
+        draw_densities(ax, name, [Density(name, spectrum.frequency, spectrum.density, _colour(name), 0.7)], highest)
     axes[-1].set_xlabel("Frequency (Hz)")
     order = ("low frequency", "wave frequency", "spectrum asked for")
     header(figure, title, {name: artists[name] for name in order if name in artists}, columns=2)
