@@ -14,6 +14,7 @@ from calibration.residuals.sea_errors import channels, density, in_bands, moving
 from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.analysis.transfer_functions import transfer_function
 from jaxhydro.files import safe_name
+from jaxhydro.plots.seas import about_highest_crest
 from jaxhydro.plots.spectrum_axes import Density, draw_densities, shade_bands
 from jaxhydro.plots.style import MEASURED, SIMULATED, header, stack
 from jaxhydro.units import unit_of
@@ -104,9 +105,7 @@ def response_figure(test: SeaTest) -> Figure | None:
 def excerpt_figure(test: SeaTest) -> Figure:
     """Part of the record, about the wave's highest crest."""
     both, time = channels(test), test.fit.time
-    crest, width = float(time[np.argmax(test.wave)]), min(EXCERPT_LENGTH, float(time[-1] - time[0]))
-    begin = min(max(crest - 0.5 * width, time[0]), time[-1] - width)
-    seen = (time >= begin) & (time <= begin + width)
+    seen = about_highest_crest(time, test.wave, EXCERPT_LENGTH, float(time[0]))
     shown = ["wave", *moving(test)]
     figure, axes = stack([0.8] * len(shown))
     artists: dict[str, Artist] = {}

@@ -24,6 +24,25 @@ def moving(channels: Mapping[str, np.ndarray]) -> list[str]:
     return [name for name in channels if size[name] > max(1e-6, 1e-3 * largest[unit_of(name)])] or list(channels)[:1]
 
 
+def about_highest_crest(time: np.ndarray, wave: np.ndarray, length: float, start: float) -> np.ndarray:
+    """Samples of the window about the highest crest of a wave.
+
+    Args:
+        time: Sample times (s), (t,).
+        wave: Elevation (m), (t,).
+        length: Length of the window (s), at most that of the record.
+        start: Time from which on the window lies (s).
+
+    Returns:
+        Whether each sample is in the window, (t,).
+    """
+    later = time >= start
+    crest = float(time[later][np.argmax(wave[later])])
+    width = min(length, time[-1] - start)
+    begin = min(max(crest - 0.5 * width, start), time[-1] - width)
+    return (time >= begin) & (time <= begin + width)
+
+
 def record_figure(
     time: np.ndarray, channels: Mapping[str, np.ndarray], start: float, title: str, colour: str = SIMULATED
 ) -> Figure:
@@ -46,11 +65,7 @@ def window_figure(
 ) -> Figure:
     """Figure of `WINDOW` (s) about the highest crest after `start` (s), with second-order waves."""
     names = moving(channels)
-    later = time >= start
-    crest = float(time[later][np.argmax(channels["wave"][later])])
-    width = min(WINDOW, time[-1] - start)
-    begin = min(max(crest - 0.5 * width, start), time[-1] - width)
-    seen = (time >= begin) & (time <= begin + width)
+    seen = about_highest_crest(time, channels["wave"], WINDOW, start)
     figure, axes = stack([PANEL_HEIGHT] * len(names))
     artists = {}
     for ax, name in zip(axes, names, strict=True):
