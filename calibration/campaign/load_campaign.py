@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -46,7 +47,7 @@ class Campaign:
     findings: tuple[Finding, ...]
     own: Model | None = None
 
-    @property
+    @cached_property
     def model(self) -> Model:
         """The declared model, that calibrations begin with. Raises InputError for a platform that is none."""
         return build(self.platform) if self.own is None else self.own
