@@ -39,7 +39,7 @@ def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple
     Raises:
         InputError: The file is no calibration, or has values that the model lacks.
     """
-    from calibration.residuals.measured_seas import non_default_options
+    from calibration.residuals.wave_options import non_default_options
     from calibration.results.applied_calibration import apply_calibration
 
     used = apply_calibration(source, model, asked, everything=True)

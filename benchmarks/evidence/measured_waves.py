@@ -48,8 +48,9 @@ def fitted() -> dict[str, Any]:
 def case(key: str, name: str) -> dict[str, Any]:
     """One set of coefficients and options against all three seas."""
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.residuals.measured_seas import Options, compare
+    from calibration.residuals.measured_seas import compare
     from calibration.residuals.sea_errors import in_bands
+    from calibration.residuals.wave_options import Options
     from jaxhydro.dynamics.statics import natural_modes
     from jaxhydro.platform.build import build
 

@@ -11,7 +11,7 @@ from calibration.discovery.acceptance import Verdict
 from calibration.discovery.refusal import Refusal
 from calibration.discovery.reported_effects import Effect
 from calibration.discovery.reported_forces import LatentForce
-from calibration.residuals.measured_seas import Options
+from calibration.residuals.wave_options import Options
 from calibration.result import Calibration
 
 if TYPE_CHECKING:

@@ -18,7 +18,8 @@ from calibration.fitting.cores import cores
 from calibration.parameters.space import ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
 from calibration.residuals.decays import DecayProblem
-from calibration.residuals.measured_seas import Options, moving
+from calibration.residuals.moving_channels import moving
+from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.model import Model
 from jaxhydro.interrupts import stoppable_threads
 

@@ -5,9 +5,9 @@ file. Everything is SI at full scale.
 """
 
 import dataclasses
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, TypeAlias, get_args
+from typing import Any, NamedTuple, TypeAlias
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -19,12 +19,11 @@ from calibration.campaign.manifest import WAVE
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run, runs
 from calibration.campaign.second_order_hint import second_order_hint
-from calibration.campaign.wave_band import wave_band
+from calibration.residuals.moving_channels import moving_channels
 from calibration.residuals.run_segments import run_segments, samples_after_transient, simulate_segments
+from calibration.residuals.wave_options import Options
 from calibration.result import Series, TestFit
 from jaxhydro.analysis.sea_statistics import record_peak_period
-from jaxhydro.choices import check
-from jaxhydro.dynamics.conventions import allowed_values
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.sea_of_request import share_within
@@ -35,65 +34,12 @@ from jaxhydro.environment import DOFS, Environment
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.hull.hull import Hull
 from jaxhydro.waves.irregular import separated_record
-from jaxhydro.waves.irregular_sea import Acting, IrregularSea
-from jaxhydro.waves.sea import Stretching
+from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_limits import sea_limits
-from jaxhydro.waves.second_order import KINDS, Kind
 
 MAX_MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
 MIN_BAND_SHARE = 0.95  # of its variance, that should lie in the band
 NO_ZERO = "the campaign states no `zero`: motions are taken as measured from the reference position"
-
-
-@dataclass(frozen=True)
-class Options:
-    """How waves are made and act. Frequencies (Hz, full scale) bound the first order; diffraction None: as the platform says.
-
-    In the default band: below it a sea has no first order worth the name, and what a gauge reads there is bound, or the basin's
-    own; above, waves are shorter than 17 m, and second order ceases to make sense of a record (it need not converge). `kinds`
-    of pairs bind at second order, differences of frequencies up to `highest_difference` (Hz; None: all), and act as `acting`
-    says, as in `IrregularSea`.
-    """
-
-    order: Literal[1, 2] = 2
-    stretching: Stretching = "vertical"
-    diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None = None
-    low: float = 0.03
-    cutoff: float = 0.3
-    kinds: tuple[Kind, ...] = KINDS
-    highest_difference: float | None = None
-    acting: Acting = "everywhere"
-
-    def __post_init__(self) -> None:
-        """Raises UnknownName for another order, stretching, diffraction, kind or place of action."""
-        check(order=(self.order, (1, 2)), stretching=(self.stretching, get_args(Stretching)))
-        check(diffraction=(self.diffraction, (*allowed_values("diffraction"), None)), acting=(self.acting, get_args(Acting)))
-        for kind in self.kinds:
-            check(kinds=(kind, KINDS))
-
-
-def options_of(campaign: Campaign) -> Options:
-    """Default options of a campaign's seas where a command says nothing: its band, and waves as its `records` state."""
-    manifest, stated = campaign.manifest, campaign.manifest.records
-    low, cutoff = wave_band(manifest, campaign.model, campaign.records)
-    highest = None if stated.highest_difference is None else stated.highest_difference / manifest.scale**0.5
-    return Options(
-        order=stated.order, low=low, cutoff=cutoff, kinds=stated.kinds, highest_difference=highest, acting=stated.acting
-    )
-
-
-def non_default_options(options: Options, asked: Collection[str] = (), usual: Options = Options()) -> str:
-    """Options of seas that differ from the `usual` ones, in words; those `asked` for are left aside."""
-    words = []
-    of_second = {
-        "kinds": f"bound waves at {' and '.join(f'{kind}s' for kind in options.kinds)} of frequencies only",
-        "highest_difference": f"differences up to {options.highest_difference or 0:.3g} Hz",
-        "acting": f"bound waves act {options.acting}",
-    }
-    for name in (field.name for field in dataclasses.fields(options) if field.name not in asked):
-        if (value := getattr(options, name)) != getattr(usual, name) and (options.order == 2 or name not in of_second):
-            words.append(of_second.get(name, f"{name}: {value:.3g} Hz" if isinstance(value, float) else f"{name}: {value}"))
-    return ", ".join(words)
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,21 +235,6 @@ _observed = eqx.filter_jit(observe)
 
 class Diverged(ArithmeticError):
     """A simulated motion that is no result."""
-
-
-MOVING_SHARE = 0.2  # of the largest motion of its unit: what moves less is in the files, and neither in tables nor fitted
-
-
-def moving_channels(motions: Mapping[str, np.ndarray]) -> list[str]:
-    """The motions that are large beside others of their unit."""
-    return moving({name: float(np.std(values)) for name, values in motions.items()})
-
-
-def moving(size: Mapping[str, float]) -> list[str]:
-    """The same, by standard deviations (m, rad)."""
-    angle = {name: DOFS.index(name) > 2 for name in size}
-    largest = {kind: max((size[n] for n in size if angle[n] == kind), default=0.0) for kind in (False, True)}
-    return [name for name in size if size[name] >= MOVING_SHARE * largest[angle[name]]]
 
 
 def _moving(test: SeaTest) -> dict[str, tuple[np.ndarray, np.ndarray]]:

@@ -19,8 +19,10 @@ from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import AbstractGroupedResidual
-from calibration.residuals.measured_seas import Options, Seas, moving_channels, peak_period
+from calibration.residuals.measured_seas import Seas, peak_period
+from calibration.residuals.moving_channels import moving_channels
 from calibration.residuals.run_segments import run_segments, samples_after_transient, simulate_segments
+from calibration.residuals.wave_options import Options
 from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.analysis.spectral import SEGMENT, band_weights
 from jaxhydro.dynamics.integrate import integrate

@@ -35,7 +35,7 @@ from calibration.results.diagnosis_file import (
 )
 from calibration.results.refusal_sentences import describe_refusal
 from calibration.results.result_folder import DIAGNOSIS_FILE, draw, outdated, write_motion
-from calibration.results.write_calibration import dataset
+from calibration.results.tests_dataset import dataset
 from jaxhydro.files import staged
 from jaxhydro.result_model import finite_or_null, stated
 from jaxhydro.units import for_people, unit_of

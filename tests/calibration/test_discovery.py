@@ -28,7 +28,7 @@ from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE
 from calibration.discovery.search import Search
 from calibration.discovery.set_up import set_up_study
-from calibration.residuals.measured_seas import Options
+from calibration.residuals.wave_options import Options
 from calibration.results.refusal_sentences import describe_refusal
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS

@@ -14,7 +14,7 @@ from calibration.campaign.load_campaign import load_campaign
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.sea_fit import calibrate_in_waves
-from calibration.residuals.measured_seas import Options
+from calibration.residuals.wave_options import Options
 from jaxhydro.choices import UnknownName, check, nearest, unknown
 from jaxhydro.dynamics.conventions import Conventions, allowed_values
 from jaxhydro.dynamics.integrate import Method, clock

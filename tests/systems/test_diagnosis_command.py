@@ -18,7 +18,8 @@ import jaxhydro as jh
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.fitting.progress import Interrupted, Progress
 from calibration.report.write_report import write_report
-from calibration.residuals.measured_seas import Diverged, Options
+from calibration.residuals.measured_seas import Diverged
+from calibration.residuals.wave_options import Options
 from calibration.results.applied_calibration import apply_calibration
 from calibration.results.calibration_file import read_saved
 from calibration.results.diagnosis_file import read_diagnosis
