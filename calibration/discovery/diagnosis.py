@@ -180,7 +180,7 @@ class Diagnosis:
         return diagnosis_html(self)
 
     def to_xarray(self) -> "xr.Dataset":
-        """Motions of all tests (m, deg): measured, and simulated without and with the effects found, as in simulated.nc.
+        """Measured and simulated motions of all tests (m, deg), without and with the effects, as in simulated.nc.
 
         Returns:
             Variables `measured`, `simulated` (with the effects), `before` (without) by test, channel and time; NaN where there
@@ -202,7 +202,7 @@ class Diagnosis:
         return effects_frame(self)
 
     def plot(self, tests: Collection[str] | None = None) -> "list[Axes]":
-        """Plot measured motion, and simulated motion before and after the effects were added; held-out tests first.
+        """Plot measured motions, and simulated ones without and with the effects; held-out tests first.
 
         Args:
             tests: Names of the tests to show; None: all.

@@ -153,11 +153,11 @@ def accepted_effect(search: Search, one: Candidate, after: FitState, doubt: str 
 
 def plausible_ranges(search: Search, one: Candidate, state: FitState) -> dict[str, PlausibleRange]:
     """Plausible ranges of an effect's amplitudes, and which sizes in a fit are at an end."""
-    found = {}
+    ranges = {}
     for label in one.amplitudes:
         size, value = search.setup.plausible[label], search.study.value(label, state.look.place.x)
         null = search.study.space.free[search.study.labels.index(label)].start
         near = END_SHARE * (size.upper - size.lower)
         at_end = any(abs(value - end) < near < abs(end - null) for end in (size.lower, size.upper))
-        found[label] = PlausibleRange(size.lower, size.upper, size.source, at_end)
-    return found
+        ranges[label] = PlausibleRange(size.lower, size.upper, size.source, at_end)
+    return ranges

@@ -49,12 +49,14 @@ def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[
         free, x, deviation = study.space.free[k], look.place.x[k], float(deviations[look.active.index(i)])
         slope = (float(free.transform.forward(x + 1e-4)) - float(free.transform.forward(x - 1e-4))) / 2e-4
         about = study.model.about(name)
-        known = bool(deviation < 0.5 * prior.width[i])
+        determined = bool(deviation < 0.5 * prior.width[i])
         size = abs(slope) * deviation * float(study.directions[i, k])
         value = study.value(name, look.place.x)
         ends = np.array([about.lower, about.upper])
         bound = free.transform.at_bound(float(x)) or bool(np.isclose(value, ends, rtol=1e-6, atol=0.0).any())
-        values[name] = Estimate(name, value, size if known else None, about.unit, about.meaning, free.start, bound, known)
+        values[name] = Estimate(
+            name, value, size if determined else None, about.unit, about.meaning, free.start, bound, determined
+        )
     return values
 
 
@@ -96,7 +98,7 @@ def calibration_of(campaign: Campaign, search: Search, state: FitState, before: 
     )
 
 
-def values_as_estimates(search: Search, state: FitState, labels: Sequence[str], known: bool = True) -> dict[str, Estimate]:
+def values_as_estimates(search: Search, state: FitState, labels: Sequence[str], determined: bool = True) -> dict[str, Estimate]:
     """Estimates without standard deviations: of discrete choices, and of mooring lines that move together.
 
     Args:
@@ -109,7 +111,7 @@ def values_as_estimates(search: Search, state: FitState, labels: Sequence[str], 
     for label in labels:
         about, start = search.study.model.about(label), search.study.space.free[search.study.labels.index(label)].start
         value = search.study.value(label, state.look.place.x)
-        estimates[label] = Estimate(label, value, None, about.unit, about.meaning, start, False, known)
+        estimates[label] = Estimate(label, value, None, about.unit, about.meaning, start, False, determined)
     return estimates
 
 
@@ -129,7 +131,7 @@ def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestF
     """Measured and simulated motions of every test at a point."""
     study = search.study
     motions = study.motions(place)
-    found = {}
+    fits = {}
     if study.decays is not None:
         data = study.decays.data
         in_decays = np.asarray(motions.pop(0)).reshape(len(study.decay_records), len(data.dofs), -1)
@@ -145,7 +147,7 @@ def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestF
                     scored = channel == record.degree_of_freedom
                     rows.append(Series(channel, measured, simulated, off, record.noise[channel], scored))
             dof_name = record.degree_of_freedom
-            found[record.id] = TestFit(record.id, record.use, "decay", dof_name, record.time, tuple(rows), {}, record.file)
+            fits[record.id] = TestFit(record.id, record.use, "decay", dof_name, record.time, tuple(rows), {}, record.file)
     by_id = {r.id: r for r in campaign.records}
     all_runs = runs(campaign) if study.seas else ()
     peaks = {record.id: peak_period(run, record, campaign.manifest.scale) for run in all_runs for record in run.records}
@@ -160,13 +162,13 @@ def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestF
             )
             time = np.asarray(sea.times[begin : begin + n])
             bands = _bands(series, float(time[1] - time[0]), peaks[test]) if record.kind == "irregular" else {}
-            found[test] = TestFit(test, record.use, record.kind, None, time, series, {}, record.file, bands)
-    return [found[r.id] for r in campaign.records if r.id in found]
+            fits[test] = TestFit(test, record.use, record.kind, None, time, series, {}, record.file, bands)
+    return [fits[r.id] for r in campaign.records if r.id in fits]
 
 
 def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, dict[str, BandError]]:
     """Relative errors of energy in frequency bands, for a sea of this peak period (s)."""
-    found: dict[str, dict[str, BandError]] = {}
+    errors: dict[str, dict[str, BandError]] = {}
     for one in series:
         if not one.scored:
             continue
@@ -175,5 +177,5 @@ def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, di
             weights = band_weights(len(one.measured), step, low, high)
             measured, simulated = weights.integral(one.measured), weights.integral(one.simulated)
             row[name] = BandError(float(simulated / measured - 1), float("nan"), low, high)
-        found[one.channel] = row
-    return found
+        errors[one.channel] = row
+    return errors

@@ -69,7 +69,7 @@ class StudySetup(NamedTuple):
 
 def motions_of(campaign: Campaign) -> dict[str, float]:
     """Motions that the tests are about, with their largest standard deviation in a test (m, rad)."""
-    found: dict[str, float] = {}
+    motions: dict[str, float] = {}
     for record in campaign.records:
         if record.use == "ignore":
             continue
@@ -80,8 +80,8 @@ def motions_of(campaign: Campaign) -> dict[str, float]:
         else:
             continue
         for name in names:
-            found[name] = max(found.get(name, 0.0), float(np.std(record.values[name])))
-    return {dof: found[dof] for dof in DOFS if dof in found}
+            motions[name] = max(motions.get(name, 0.0), float(np.std(record.values[name])))
+    return {dof: motions[dof] for dof in DOFS if dof in motions}
 
 
 def set_up_study(

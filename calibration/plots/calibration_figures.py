@@ -167,8 +167,8 @@ class DecayCycles(NamedTuple):
         def cycles(values: np.ndarray | None) -> Cycles:
             if values is None or not np.isfinite(values).all():
                 return Cycles(*[np.zeros(0)] * 4)
-            found = decay_cycles(test.time, values, main.noise)
-            return found._replace(amplitude=for_people(main.channel, found.amplitude))
+            half_cycles = decay_cycles(test.time, values, main.noise)
+            return half_cycles._replace(amplitude=for_people(main.channel, half_cycles.amplitude))
 
         return cls(
             cycles(main.measured),
@@ -188,11 +188,11 @@ class DecayCycles(NamedTuple):
 def _fitted_line(time: np.ndarray, series: Series) -> np.ndarray | None:
     """Decrement per cycle of linear and quadratic damping, T p / 2 + 8/3 q a, at the smallest and largest amplitude a."""
     try:
-        found = classical(time, series.measured, series.noise)
+        analysis = classical(time, series.measured, series.noise)
     except ValueError:  # too few cycles
         return None
-    ends = found.half_cycles.amplitude[[-1, 0]]
-    decrement = 0.5 * found.fit.period * found.fit.linear.value + 8 / 3 * found.fit.quadratic.value * ends
+    ends = analysis.half_cycles.amplitude[[-1, 0]]
+    decrement = 0.5 * analysis.fit.period * analysis.fit.linear.value + 8 / 3 * analysis.fit.quadratic.value * ends
     return np.stack([for_people(series.channel, ends), decrement])
 
 

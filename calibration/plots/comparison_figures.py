@@ -80,17 +80,17 @@ def response_figure(test: SeaTest) -> Figure | None:
     if test.fit.kind != "irregular" or not shown:
         return None
     try:
-        found = {
+        transfers = {
             name: [transfer_function(test.fit.time, wave, x) for wave, x in zip(both["wave"], both[name])] for name in shown
         }
     except ValueError:  # fewer than two segments
         return None
-    energy = np.interp(found[shown[0]][0].frequency, *density(test, test.wave)[:2])
+    energy = np.interp(transfers[shown[0]][0].frequency, *density(test, test.wave)[:2])
     gap = np.where(energy > MIN_WAVE_DENSITY * energy.max(), 0.0, np.nan)
     figure, axes = stack([0.8, 0.4] * len(shown))
     artists: dict[str, Artist] = {}
     for i, name in enumerate(shown):
-        for label, one, colour, width in zip(("measured", "simulated"), found[name], (MEASURED, SIMULATED), (1.4, 0.8)):
+        for label, one, colour, width in zip(("measured", "simulated"), transfers[name], (MEASURED, SIMULATED), (1.4, 0.8)):
             artists[label] = axes[2 * i].plot(one.frequency, one.amplitude + gap, color=colour, lw=width)[0]
             axes[2 * i + 1].plot(one.frequency, one.coherence + gap, color=colour, lw=width)
         axes[2 * i].set_ylim(bottom=0)

@@ -101,7 +101,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         raise InputError(run.file, [Problem("order", "1 in a sea of several headings, as its test states", f"{options.order}")])
     inside = share_within(run.wave, run.step, options.low, options.cutoff)
     try:
-        found = separated_record(
+        separated = separated_record(
             run.time,
             run.wave,
             environment,
@@ -116,7 +116,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     except ValueError as error:
         expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
         raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
-    waves, notes = found.waves, []
+    waves, notes = separated.waves, []
     if run.directions is not None:
         waves = run.directions.turned(waves, run.position)
         notes.append(
@@ -133,9 +133,9 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         acting=options.acting,
     )
     band = f"{options.low:g} to {options.cutoff:g} Hz"
-    if found.mismatch > MAX_MISMATCH:
+    if separated.mismatch > MAX_MISMATCH:
         notes.append(
-            f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "
+            f"{run.file}: first and second order miss {100 * separated.mismatch:.2g} % of the wave record from {band} "
             "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it"
         )
     if inside < MIN_BAND_SHARE:
@@ -148,7 +148,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         count = float(run.time[-1] - run.time[0]) / period
         limits = sea_limits(4 * float(np.std(run.wave)), period, environment, options.order, count)
         notes += [f"{run.file}: {one.text}" for one in limits]
-    return RunSea(sea, found.mismatch, found.rounds, inside, tuple(notes))
+    return RunSea(sea, separated.mismatch, separated.rounds, inside, tuple(notes))
 
 
 def with_diffraction(model: Model, options: Options) -> Model:
@@ -215,9 +215,9 @@ def compare(
                 motion = np.full((len(run.time), 6), np.nan)
                 times = run.time[: part.end + 1]
                 readings = _observed(model, found_there.grid, jnp.asarray(times[part.begin :]), origin, in_waves=True)
-                motion[part.begin : part.end + 1] = there = np.asarray(readings)
-                if not np.isfinite(there).all():
-                    first = times[part.begin + np.argmin(np.isfinite(there).all(axis=1))]
+                motion[part.begin : part.end + 1] = samples = np.asarray(readings)
+                if not np.isfinite(samples).all():
+                    first = times[part.begin + np.argmin(np.isfinite(samples).all(axis=1))]
                     raise Diverged(f"{run.file}: the motion grows beyond all bounds at {first:.4g} s")
                 wave = one.sea.gauge(times[part.begin :], run.position)
                 wave = np.concatenate([np.full(part.begin, np.nan), wave])
@@ -238,9 +238,9 @@ class Diverged(ArithmeticError):
 
 
 def _moving(test: SeaTest) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Measured and simulated motion by channel, of those that move in the simulation."""
-    moving_ones = moving_channels({one.channel: one.simulated for one in test.fit.series})
-    return {one.channel: (one.measured, one.simulated) for one in test.fit.series if one.channel in moving_ones}
+    """Measured and simulated motion by channel, for channels that move in the simulation."""
+    large = moving_channels({series.channel: series.simulated for series in test.fit.series})
+    return {series.channel: (series.measured, series.simulated) for series in test.fit.series if series.channel in large}
 
 
 def peak_period(run: Run, record: Record, scale: float) -> float:

@@ -78,8 +78,8 @@ class BlockProblem(AbstractResidual):
         """With what is not fitted where the continuous runs of other coefficients are."""
         model = self.space.model(self.model, x)
         paths = [_continuous(model, run) for run in self.sea.runs]
-        found = [jax.tree.map(lambda leaf, b=b: leaf[b.begin], path) for path, b in zip(paths, self.blocks, strict=True)]
-        return eqx.tree_at(lambda problem: [blocks.state for blocks in problem.blocks], self, found)
+        states = [jax.tree.map(lambda leaf, b=b: leaf[b.begin], path) for path, b in zip(paths, self.blocks, strict=True)]
+        return eqx.tree_at(lambda problem: [blocks.state for blocks in problem.blocks], self, states)
 
     def simulated(
         self, x: Float[Array, " p"], constants: Float[Array, " m"], own: Float[Array, " o"], block: Blocks, run: SeaRun

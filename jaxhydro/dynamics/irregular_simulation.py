@@ -139,19 +139,21 @@ def simulate_irregular(
         duration = float(times[-1] - times[0])
         steps = max(adams_bashforth.START_STEPS, math.ceil(duration / limit - 1e-9))
         met = summed_directly(model, sea)
-        found, grid = simulate_steps(model, met, start, times, jnp.asarray(duration / steps), steps, method, adjoint, precision)
-        return IrregularSimulation(found, grid, met, duration / steps, steps)
+        response, grid = simulate_steps(
+            model, met, start, times, jnp.asarray(duration / steps), steps, method, adjoint, precision
+        )
+        return IrregularSimulation(response, grid, met, duration / steps, steps)
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     points, own = model.hull.extremities(), excursion_of(model)
     excursion = own
     computed: Any = {"transfer": model.transfer, "exciting": model.excitation}
     while True:
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, **computed)
-        found, grid = simulate_steps(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint, precision)
+        response, grid = simulate_steps(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint, precision)
         box: Any = model.through(prepared)  # with the box moved where the sea is
-        reached = float(_farthest(found.position, jnp.asarray(points), box))
+        reached = float(_farthest(response.position, jnp.asarray(points), box))
         if not reached + margin > prepared.half:
-            return IrregularSimulation(found, grid, prepared, step, steps)
+            return IrregularSimulation(response, grid, prepared, step, steps)
         if reached > prepared.half + 10 * own:
             raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
         excursion += reached + margin - prepared.half + 0.5 * own

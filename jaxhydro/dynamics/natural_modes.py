@@ -144,14 +144,14 @@ def _with_memories(
         for _ in range(MODE_ITERATIONS):
             omega = float(np.sqrt(square[i]))
             response = sum(np.asarray(load.retardation(omega)) for load in memories)
-            found, shapes = np.linalg.eig(np.linalg.solve(mass + response.imag / omega, stiffness))
+            values, shapes = np.linalg.eig(np.linalg.solve(mass + response.imag / omega, stiffness))
             old, new = (scale[:, None] * one / np.linalg.norm(scale[:, None] * one, axis=0) for one in (vectors, shapes.real))
             alike = np.abs(old.T @ new)
             # of two modes with nearly one frequency, such as roll and pitch, each takes the shape that the other is less like
             own = alike.argmax(axis=0) == i
             same = int(np.argmax(np.where(own, alike[i], 0.0) if own.any() else alike[i]))
-            change = abs(found[same].real - square[i])
-            square[i], vectors[:, i] = found[same].real, shapes[:, same].real
+            change = abs(values[same].real - square[i])
+            square[i], vectors[:, i] = values[same].real, shapes[:, same].real
             if square[i] <= 0 or change < MODE_TOLERANCE * square[i]:
                 break
     order = np.argsort(square)
@@ -170,18 +170,18 @@ def _one_motion_each(
         vectors: Mode shapes.
         scale: Factors by which displacements and rotations are compared.
     """
-    found = np.array(vectors)
+    shapes = np.array(vectors)
     begin = 0
     for end in range(1, len(square) + 1):
         if end < len(square) and square[end] - square[begin] < SAME_FREQUENCY * square[end]:
             continue
         if end - begin > 1:
-            alike = found[:, begin:end]
+            alike = shapes[:, begin:end]
             rest, motions = alike * scale[:, None], []
             for _ in range(end - begin):  # the motion that is largest in what others do not move
                 motions.append(int(np.argmax((rest**2).sum(axis=1))))
                 along = rest[motions[-1]] / np.linalg.norm(rest[motions[-1]])
                 rest = rest - np.outer(rest @ along, along)
-            found[:, begin:end] = alike @ np.linalg.inv(alike[sorted(motions)])
+            shapes[:, begin:end] = alike @ np.linalg.inv(alike[sorted(motions)])
         begin = end
-    return found
+    return shapes

@@ -51,8 +51,8 @@ class _HeldMotion(NamedTuple):
 
 def _unbalanced(position: Float[Array, "6"], model: Model, held: _HeldMotion | None) -> Float[Array, "6"]:
     """Residual of the equilibrium: `_balance`, and for a held motion its distance from where it is held."""
-    found = _balance(position, model)
-    return found if held is None else jnp.where(held.mask > 0, position - held.value, found)
+    residual = _balance(position, model)
+    return residual if held is None else jnp.where(held.mask > 0, position - held.value, residual)
 
 
 @eqx.filter_custom_jvp
@@ -62,8 +62,8 @@ def _root(model: Model, held: _HeldMotion | None) -> tuple[Float[Array, "6"], Fl
     # with the library's implicit derivative cannot be kept compiled
 
     def balance(q: Float[Array, "6"]) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
-        found = _unbalanced(q, model, held)
-        return found, found
+        residual = _unbalanced(q, model, held)
+        return residual, residual
 
     def going(at: tuple[Array, Array, Array, Array]) -> Array:
         root, step, count, _ = at
@@ -71,10 +71,10 @@ def _root(model: Model, held: _HeldMotion | None) -> tuple[Float[Array, "6"], Fl
 
     def newton(at: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
         root, _, count, _ = at
-        slopes, found = jax.jacfwd(balance, has_aux=True)(root)
+        slopes, residual = jax.jacfwd(balance, has_aux=True)(root)
         # the least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is
-        step = jnp.linalg.pinv(slopes, rtol=MIN_RESTORING) @ found
-        return root - step, step, count + 1, found
+        step = jnp.linalg.pinv(slopes, rtol=MIN_RESTORING) @ residual
+        return root - step, step, count + 1, residual
 
     never = jnp.full(6, jnp.inf)
     root, _, _, unbalanced = jax.lax.while_loop(going, newton, (jnp.zeros(6), never, jnp.asarray(0), never))

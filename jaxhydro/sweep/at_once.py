@@ -75,7 +75,7 @@ def simulate_together(
     Returns:
         One motion per sea. None where the platform leaves the box that its sea was prepared for, or has no equilibrium.
     """
-    found: list[SeaMotion | None] = [None] * len(seas)
+    motions: list[SeaMotion | None] = [None] * len(seas)
     alike: dict[Any, list[tuple[int, Any]]] = {}
     for i, sea in enumerate(seas):
         waves = sea.components
@@ -97,8 +97,8 @@ def simulate_together(
         spectra = [None] * len(padded) if bound is None else np.asarray(bound)
         for (i, _), moved, far, spectrum in zip(same, np.asarray(position), np.asarray(reached), spectra):
             if not far > shared.half:
-                found[i] = SeaMotion(moved, spectrum)
-    return found
+                motions[i] = SeaMotion(moved, spectrum)
+    return motions
 
 
 def power_of_two(count: int) -> int:
@@ -123,8 +123,8 @@ def _stacked(each: Sequence[Any]) -> tuple[Any, Any]:
     """
     leaves, tree = zip(*(jax.tree.flatten(one) for one in each))
     alike = [all(x is column[0] for x in column) or not eqx.is_array(column[0]) for column in zip(*leaves)]
-    found = [c[0] if same else np.stack([np.asarray(x) for x in c]) for same, c in zip(alike, zip(*leaves))]
-    return jax.tree.unflatten(tree[0], found), jax.tree.unflatten(tree[0], [None if same else 0 for same in alike])
+    stacked = [c[0] if same else np.stack([np.asarray(x) for x in c]) for same, c in zip(alike, zip(*leaves))]
+    return jax.tree.unflatten(tree[0], stacked), jax.tree.unflatten(tree[0], [None if same else 0 for same in alike])
 
 
 @eqx.filter_jit

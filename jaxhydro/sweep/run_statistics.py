@@ -43,8 +43,8 @@ def unit(channel: str) -> str:
 
 def frequencies(time: Float[np.ndarray, " t"]) -> Float[np.ndarray, " f"]:
     """Frequencies (Hz) of `power_spectrum` for records at these times (s), up to `MAX_FREQUENCY`."""
-    found = power_spectrum(time, np.zeros(len(time))).frequency
-    return found[found <= MAX_FREQUENCY * (1 + 1e-9)]
+    lines = power_spectrum(time, np.zeros(len(time))).frequency
+    return lines[lines <= MAX_FREQUENCY * (1 + 1e-9)]
 
 
 def run_results(
@@ -70,15 +70,15 @@ def run_results(
     """
     inside = time >= start
     when = time[inside]
-    size, found = len(frequencies(when)), []
+    size, numbers = len(frequencies(when)), []
     for name, values in channels.items():
         values = still(values[inside])
         spectrum = power_spectrum(when, values)
         limits = bands_of(name, peak_period)
         integrals = [band_integral(spectrum, *limits[band]) if band in limits else math.nan for band in BANDS]
         damage = equivalent_ranges(values, exponents, equivalent_frequency * (when[-1] - when[0]))
-        found.append((np.array(statistics(when, values)), spectrum.density[:size], np.array(integrals), damage))
-    of_statistics, density, areas, ranges = (np.stack(column) for column in zip(*found))
+        numbers.append((np.array(statistics(when, values)), spectrum.density[:size], np.array(integrals), damage))
+    of_statistics, density, areas, ranges = (np.stack(column) for column in zip(*numbers))
     return RunResults(of_statistics, density, areas, ranges, np.stack(list(channels.values())))
 
 

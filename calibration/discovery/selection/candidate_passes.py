@@ -52,9 +52,9 @@ def jobs_of(
     """
     jobs = []
     for some in passes:
-        there = fits.with_values(place, {k: v for _, at in some for k, v in at.items()})
+        point = fits.with_values(place, {k: v for _, at in some for k, v in at.items()})
         free = dict.fromkeys(i for one, _ in some for i in fits.study.index(one.amplitudes) if i not in active)
-        jobs.append((there, tuple(free)))
+        jobs.append((point, tuple(free)))
     return jobs
 
 
@@ -75,10 +75,10 @@ def packed(some: Sequence[CandidateValues], width: int) -> list[list[CandidateVa
     """
     passes: list[list[CandidateValues]] = []
     for one, at in some:
-        for there in passes:
-            room = width - sum(len(other.amplitudes) for other, _ in there)
-            if len(one.amplitudes) <= room and all(other is not one for other, _ in there):
-                there.append((one, at))
+        for taken in passes:
+            room = width - sum(len(other.amplitudes) for other, _ in taken)
+            if len(one.amplitudes) <= room and all(other is not one for other, _ in taken):
+                taken.append((one, at))
                 break
         else:
             passes.append([(one, at)])
