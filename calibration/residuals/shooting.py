@@ -35,8 +35,14 @@ from jaxhydro.environment import DOFS
 
 
 class BlockResiduals(NamedTuple):
-    """What blocks come to: residuals, where they begin and where they are when the next one begins (m, rad), and how far the
-    hull goes beyond the sea's box (m)."""
+    """Residuals and ends of the blocks of a run.
+
+    Attributes:
+        residual: Residuals by block, channel and time.
+        first: Motions at the start of each block (m, rad).
+        last: Motions when the next block begins (m, rad).
+        beyond: Distance that the hull goes beyond the sea's box (m).
+    """
 
     residual: Float[Array, "b c t"]
     first: Float[Array, "b c"]

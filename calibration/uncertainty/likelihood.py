@@ -177,15 +177,22 @@ def coordinates(unknowns: Unknowns) -> np.ndarray:
 def restored_fit(
     campaign: Campaign, began: Mapping[str, Any], ended: Mapping[str, float], report: Callable[..., None] = lambda *_: None
 ) -> Fit:
-    """The fit that a calibration to decays was, with its free parameters and priors, where it `ended`; the records' releases
-    and offsets, which a calibration does not keep, begin from the records. `began` are values, of free parameters and others,
-    that it began from in place of the platform's; `report` is that of `prepare`."""
+    """Fit of a finished calibration to decays, with its free parameters and priors.
+
+    Releases and offsets, which a calibration does not keep, begin from the records.
+
+    Args:
+        campaign: The campaign.
+        began: Values, of free parameters and others, that the calibration began from in place of the platform's.
+        ended: Calibrated values by label.
+        report: As in `prepare_fit`.
+    """
     declared = campaign.model.values
     # only what is not as declared, so that types stay, and what was compiled for the fit serves again
     start = {k: float(v) for k, v in began.items() if float(v) != float(declared[k])}
     fit = prepare_fit(campaign, free=list(ended), start=start, report=report)
-    there = [p.transform.inverse(float(ended[p.label])) for p in fit.decays.problem.space.free]
-    fit.unknowns = fit.unknowns._replace(shared=jnp.array(there))
+    coordinates = [p.transform.inverse(float(ended[p.label])) for p in fit.decays.problem.space.free]
+    fit.unknowns = fit.unknowns._replace(shared=jnp.array(coordinates))
     return fit
 
 
