@@ -193,7 +193,7 @@ def motions(model: Any, case: Case) -> dict[str, Any]:
     from jaxhydro.dynamics.requested_sea import RequestedSea, usual_transient
     from jaxhydro.dynamics.response import decay_cycles
     from jaxhydro.dynamics.sea_of_request import build_sea
-    from jaxhydro.dynamics.simulate import largest_step
+    from jaxhydro.dynamics.time_steps import largest_step
 
     times = np.arange(0.0, DURATION + INTERVAL / 2, INTERVAL)
     how: dict[str, Any] = {"gamma": None, "spectrum": "jonswap", "seed": 0, "amplitudes": "deterministic", "low": None}

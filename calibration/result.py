@@ -187,7 +187,7 @@ class Calibration:
         Returns:
             Variables `measured`, `simulated`, `before` by test, channel and time; NaN where there is none.
         """
-        from calibration.results.write_calibration import dataset
+        from calibration.results.tests_dataset import dataset
 
         return dataset(self)
 

@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.campaign.load_campaign import load_campaign
-from calibration.discovery.diagnosis_conclusion import calibration_of
+from calibration.discovery.diagnosis_fits import calibration_of
 from calibration.discovery.gather import highest_frequency
 from calibration.discovery.latent_force.recover_force import accelerations, forces_of, resampled_tests
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest
 from calibration.discovery.search import Search
 from calibration.discovery.set_up import set_up_study
-from calibration.residuals.measured_seas import options_of
+from calibration.residuals.wave_options import options_of
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS

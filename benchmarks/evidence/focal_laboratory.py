@@ -28,7 +28,7 @@ def gauge_and_point(run: Any, record: Any, water: Any, frequency: np.ndarray, mo
     import jax.numpy as jnp
     from scipy.optimize import least_squares
 
-    from jaxhydro.analysis.spectral import transfer_function
+    from jaxhydro.analysis.transfer_functions import transfer_function
     from jaxhydro.waves.dispersion import wavenumber
 
     samples = run.samples(record)

@@ -41,7 +41,8 @@ def compared(lines: tuple[str, ...], name: str) -> dict[str, Any]:
     """Simulated over measured motion in every sea: energies and correlation by band, and mean surge (m)."""
     from calibration.campaign.load_campaign import load_campaign
     from calibration.discovery.effects.candidates import with_effects
-    from calibration.residuals.measured_seas import compare, options_of
+    from calibration.residuals.measured_seas import compare
+    from calibration.residuals.wave_options import options_of
     from jaxhydro.analysis.spectral import bands
 
     campaign = load_campaign(campaign_with(lines, name))

@@ -21,7 +21,8 @@ def work(name: str, figures: Path) -> dict[str, Any]:
     """One campaign calibrated; its figures written."""
     from calibration.campaign.load_campaign import load_campaign
     from calibration.fitting.decay_fit import calibrate
-    from calibration.plots.calibration_figures import decay_figure, test_figure
+    from calibration.plots.calibration_figures import test_figure
+    from calibration.plots.decay_figures import decay_figure
     from jaxhydro import natural_modes
     from jaxhydro.dynamics.response import decay_cycles
     from jaxhydro.plots.style import save, style

@@ -48,8 +48,9 @@ def fitted() -> dict[str, Any]:
 def case(key: str, name: str) -> dict[str, Any]:
     """One set of coefficients and options against all three seas."""
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.residuals.measured_seas import Options, compare
+    from calibration.residuals.measured_seas import compare
     from calibration.residuals.sea_errors import in_bands
+    from calibration.residuals.wave_options import Options
     from jaxhydro.dynamics.statics import natural_modes
     from jaxhydro.platform.build import build
 
@@ -88,7 +89,8 @@ def lower(test: Any) -> dict[str, Any]:
     """Simulated surge `KEEL` above still water: band integrals, mean, transfer function; and what the point that was measured
     does in pitch's resonance, surge over pitch and sway over roll (m/rad, the real part), with coherence."""
     from calibration.residuals.sea_errors import channels, density
-    from jaxhydro.analysis.spectral import band_integral, bands, transfer_function
+    from jaxhydro.analysis.spectral import band_integral, bands
+    from jaxhydro.analysis.transfer_functions import transfer_function
 
     time, both = test.fit.time, channels(test)
     seen = both["surge"][1] + KEEL * np.radians(both["pitch"][1])
@@ -114,7 +116,7 @@ def lower(test: Any) -> dict[str, Any]:
 def spectra(test: Any) -> dict[str, Any]:
     """Of measured and simulated: mean, standard deviation, spectra, and transfer functions from the measured wave."""
     from calibration.residuals.sea_errors import channels, density
-    from jaxhydro.analysis.spectral import transfer_function
+    from jaxhydro.analysis.transfer_functions import transfer_function
 
     found: dict[str, Any] = {"mean": {}, "deviation": {}, "density": {}, "response": {}}
     time, both = test.fit.time, channels(test)
@@ -170,8 +172,8 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from calibration.plots.comparison_figures import LOW_BAND, WAVE_BAND
     from jaxhydro.analysis.sea_statistics import bands_of
+    from jaxhydro.plots.spectrum_axes import BAND_COLOURS
     from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, style
 
     with style():
@@ -183,7 +185,7 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
             other = found["fitted"]["seas"][name]
             for ax, (channel, unit) in zip(axes[:, column], UNITS.items(), strict=True):
                 for band, (low, high) in bands_of(channel, sea["tp"]).items():
-                    ax.axvspan(low, high, color=LOW_BAND if band == "low_frequency" else WAVE_BAND, lw=0, zorder=0.5)
+                    ax.axvspan(low, high, color=BAND_COLOURS[band], lw=0, zorder=0.5)
                 f, (measured, simulated) = sea["frequency"], sea["density"][channel]
                 artists["measured"] = ax.plot(f, measured, color=MEASURED, lw=1.3)[0]
                 artists[f"simulated, {FITTED}"] = ax.plot(f, other["density"][channel][1], color=BEFORE, lw=0.8)[0]

@@ -125,7 +125,8 @@ def declared() -> dict[str, Any]:
 
     import jaxhydro as jh
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.residuals.measured_seas import compare, options_of
+    from calibration.residuals.measured_seas import compare
+    from calibration.residuals.wave_options import options_of
 
     campaign = load_campaign(CAMPAIGN)
     model, errors = campaign.model, {}
@@ -146,7 +147,8 @@ def calibrated() -> dict[str, Any]:
     """The declared model calibrated to the three decays as `calibrate` does, and what it then makes of the sea."""
     from calibration import calibrate
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.residuals.measured_seas import compare, options_of
+    from calibration.residuals.measured_seas import compare
+    from calibration.residuals.wave_options import options_of
 
     campaign = load_campaign(CAMPAIGN)
     result = calibrate(campaign)

@@ -64,8 +64,8 @@ def keep_all(results: dict[str, dict[str, Any]]) -> None:
 def doubts(result: dict[str, Any]) -> list[str | None]:
     """What each effect found is in doubt for, None where it is for nothing: worked out from errors, and from what was tried
     where a result is from before diagnoses told."""
-    from calibration.discovery.diagnosis import HELD_OUT_ERROR
     from calibration.discovery.doubts import held_out_error_rose, outdone_effects
+    from calibration.discovery.reported_effects import HELD_OUT_ERROR
 
     if held_out_error_rose(*result["error"]):
         return [HELD_OUT_ERROR] * len(result["effects"])

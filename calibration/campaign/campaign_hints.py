@@ -10,7 +10,7 @@ from jaxtyping import Float
 from calibration.campaign.manifest import quantity
 from calibration.campaign.records import Record
 from calibration.campaign.signals import dominant_period
-from jaxhydro.dynamics.statics import Modes
+from jaxhydro.dynamics.natural_modes import Modes
 from jaxhydro.environment import DOFS
 
 RATIO_TOLERANCE = 0.15  # of a logarithm: a ratio that is a factor

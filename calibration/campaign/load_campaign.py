@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -48,21 +49,40 @@ class Campaign:
     findings: tuple[Finding, ...]
     own: Model | None = None
 
-    @property
+    @cached_property
     def model(self) -> Model:
-        """The declared model, that calibrations begin with. Raises InputError for a platform that is none."""
+        """Declared model, from which calibrations begin.
+
+        Raises:
+            InputError: The platform is impossible.
+        """
         return build(self.platform) if self.own is None else self.own
 
     def with_model(self, model: Model) -> Campaign:
-        """With a model of one's own, which may have loads that no platform file has, to be calibrated and diagnosed."""
+        """This campaign with a model in place of the platform file's, to be calibrated and diagnosed.
+
+        Args:
+            model: The model, which may have loads that no platform file has.
+        """
         return replace(self, own=model)
 
     def used(self, use: str) -> tuple[Record, ...]:
-        """The records of one use: fit, holdout or ignore."""
+        """Records of the tests of one use.
+
+        Args:
+            use: fit, holdout or ignore.
+        """
         return tuple(record for record in self.records if record.use == use)
 
     def record(self, id: str) -> Record:
-        """The record of one test. Raises UnknownName for an id that no test has."""
+        """Record of a test.
+
+        Args:
+            id: Name of the test.
+
+        Raises:
+            UnknownName: There is no such test.
+        """
         records = {record.id: record for record in self.records}
         if id not in records:
             raise unknown("test", id, records)

@@ -24,8 +24,9 @@ from calibration.report import sea_tables, tables
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
 from calibration.report.summary import calibration_sentence, summary_of
 from calibration.report.write_report import write_report
-from calibration.residuals.measured_seas import Diverged, Options, compare, non_default_options, options_of
+from calibration.residuals.measured_seas import Diverged, compare
 from calibration.residuals.seas import Objective
+from calibration.residuals.wave_options import Options, non_default_options, options_of
 from calibration.result import Calibration
 from calibration.results.applied_calibration import AppliedCalibration, apply_calibration
 from calibration.results.calibration_file import CalibrationFile, read_saved

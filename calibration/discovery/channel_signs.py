@@ -14,8 +14,8 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES, WAVE
-from calibration.discovery.diagnosis import Effect, Evidence
-from calibration.discovery.diagnosis_conclusion import test_fits_at
+from calibration.discovery.diagnosis_fits import test_fits_at
+from calibration.discovery.reported_effects import Effect, Evidence
 from calibration.formatting import listed
 from calibration.result import Estimate
 from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period

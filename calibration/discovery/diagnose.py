@@ -19,7 +19,8 @@ from calibration.discovery.residual_anatomy import anatomy
 from calibration.discovery.selection.verified_search import VerifiedSearch
 from calibration.discovery.set_up import set_up_study
 from calibration.fitting.progress import Progress
-from calibration.residuals.measured_seas import NO_ZERO, Options, options_of
+from calibration.residuals.measured_seas import NO_ZERO
+from calibration.residuals.wave_options import Options, options_of
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import CheckpointWarning
 from jaxhydro.interrupts import stopping

@@ -1,8 +1,7 @@
-"""Result of a diagnosis: effects with evidence, scores, residuals, latent forces."""
+"""Result of a diagnosis: outcome, rejected effects, scores, residuals and predictions."""
 
-import math
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -10,8 +9,10 @@ import numpy as np
 
 from calibration.discovery.acceptance import Verdict
 from calibration.discovery.refusal import Refusal
-from calibration.residuals.measured_seas import Options
-from calibration.result import Calibration, Estimate
+from calibration.discovery.reported_effects import Effect
+from calibration.discovery.reported_forces import LatentForce
+from calibration.residuals.wave_options import Options
+from calibration.result import Calibration
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,83 +32,6 @@ class Outcome(StrEnum):
     FOUND = "found"
     NOTHING_MISSING = "nothing_missing"
     UNEXPLAINED = "unexplained"
-
-
-# reason for doubt in an effect: the effects increase the held-out error, in all or in the effect's motion
-HELD_OUT_ERROR = "held_out_error"
-# reason for doubt in an effect: its fitted size is at an end of its plausible range
-IMPLAUSIBLE_SIZE = "implausible_size"
-
-
-@dataclass(frozen=True, eq=False)
-class Evidence:
-    """Evidence for an effect.
-
-    Attributes:
-        score: First-order decrease of -2 ln L of the fitted tests, beyond what the fitted parameters can explain.
-        delta_bic: Decrease of BIC after the refit; positive values speak for the effect.
-        holdout_gain: Fraction of the held-out squared error removed, where the effect acts most (1: all of it).
-        clear: Parameters over their standard deviations.
-        probability: Posterior probability among all candidates, or NaN.
-        left_out: Decrease of -2 ln L summed over the fitted tests, each left out in turn in the linearised model, or NaN.
-        left_out_better: Fraction of these tests that are predicted better with the effect, or NaN.
-    """
-
-    score: float
-    delta_bic: float
-    holdout_gain: float
-    clear: float
-    probability: float = math.nan
-    left_out: float = math.nan
-    left_out_better: float = math.nan
-
-
-@dataclass(frozen=True, eq=False)
-class PlausibleRange:
-    """Sizes that a parameter of an effect can plausibly have.
-
-    Attributes:
-        lower: Lowest value (SI).
-        upper: Highest value (SI).
-        source: Where the range comes from, in a sentence.
-        at_end: Whether the fitted value is at an end that is not its neutral value.
-    """
-
-    lower: float
-    upper: float
-    source: str
-    at_end: bool
-
-
-@dataclass(frozen=True, eq=False)
-class Effect:
-    """An effect that was found.
-
-    Attributes:
-        effect: Its name in the catalogue.
-        degree_of_freedom: The motion it acts in, or None.
-        meaning: What its amplitudes mean.
-        source: Reference of its law.
-        parameters: Estimates by label.
-        evidence: Why it is accepted.
-        share: Fraction of the unexplained error of the fitted tests that it explains.
-        indistinguishable: Effects that the records cannot tell from it.
-        telling_test: The test that would tell them apart, or None.
-        in_doubt: A rejected effect that explains more beside it, `HELD_OUT_ERROR` or `IMPLAUSIBLE_SIZE`; None: no doubt.
-        plausible: Plausible ranges of its amplitudes by label.
-    """
-
-    effect: str
-    degree_of_freedom: str | None
-    meaning: str
-    source: str
-    parameters: dict[str, Estimate]
-    evidence: Evidence
-    share: float
-    indistinguishable: tuple[str, ...]
-    telling_test: str | None
-    in_doubt: str | None = None
-    plausible: Mapping[str, PlausibleRange] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,111 +125,6 @@ class Prediction:
 
 
 @dataclass(frozen=True, eq=False)
-class ForceCoherence:
-    """Relation of a latent force to another quantity.
-
-    Attributes:
-        coherence: Fraction of the force's mean square that is a linear response to the quantity.
-        phase: Phase (rad) by which the force leads.
-        correlation: Correlation at the same instant.
-    """
-
-    coherence: float
-    phase: float
-    correlation: float
-
-
-@dataclass(frozen=True, eq=False)
-class LawTerm:
-    """A term of a force law in x (m, rad), v (m/s, rad/s) and eta (m).
-
-    Attributes:
-        name: The term.
-        coefficient: Its coefficient (SI).
-        unit: Unit of the coefficient.
-        kind: Its number in the library of terms.
-    """
-
-    name: str
-    coefficient: float
-    unit: str
-    kind: int
-
-
-@dataclass(frozen=True, eq=False)
-class Law:
-    """A law of few terms for a latent force.
-
-    Attributes:
-        terms: The terms; empty where no law explains enough of the data that were not fitted.
-        share: Fraction of the force's mean square explained in the data named by `checked`.
-        fitted: The same in the fitted tests.
-        checked: Which data `share` refers to, in words.
-        v0: Velocity scale of tanh(v / v0) (m/s, rad/s).
-        pace: Circular frequency omega of lagged velocity (rad/s).
-    """
-
-    terms: tuple[LawTerm, ...]
-    share: float
-    fitted: float
-    checked: str
-    v0: float = 1.0
-    pace: float = 1.0
-
-
-@dataclass(frozen=True, eq=False)
-class ForceExcerpt:
-    """Part of a latent force, to be plotted.
-
-    Attributes:
-        test: Name of the test.
-        time: Times of the record (s).
-        force: The force (N, N m).
-        law: The force by its law (N, N m); empty: no law.
-        beside: What is plotted beside it: `velocity` or `wave`.
-        values: Values of that quantity.
-    """
-
-    test: str
-    time: np.ndarray
-    force: np.ndarray
-    law: np.ndarray
-    beside: str
-    values: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class LatentForce:
-    """Force that the model lacks in one motion.
-
-    Dictionaries are by kind of test: `decay`, `waves`.
-
-    Attributes:
-        motion: The motion.
-        unit: N or N m.
-        rms: Root mean square.
-        shares: Fractions of the mean square in the mean and in frequency bands.
-        coherence: Relation to motions and waves.
-        growth: Exponents of its growth, by what it grows with.
-        law: A law of few terms.
-        words: Description in words.
-        shown: Part of it, to be plotted.
-        relative: Residual over the motion's standard deviation in the plotted test.
-    """
-
-    motion: str
-    unit: str
-    rms: dict[str, float]
-    shares: dict[str, dict[str, float]]
-    coherence: dict[str, dict[str, ForceCoherence]]
-    growth: dict[str, float]
-    law: Law
-    words: str
-    shown: ForceExcerpt
-    relative: float = 0.0
-
-
-@dataclass(frozen=True, eq=False)
 class Diagnosis:
     """Result of a diagnosis: the declared model, the effects that it lacks, and the model with them.
 
@@ -361,7 +180,7 @@ class Diagnosis:
         return diagnosis_html(self)
 
     def to_xarray(self) -> "xr.Dataset":
-        """Motions of all tests (m, deg): measured, and simulated without and with the effects found, as in simulated.nc.
+        """Measured and simulated motions of all tests (m, deg), without and with the effects, as in simulated.nc.
 
         Returns:
             Variables `measured`, `simulated` (with the effects), `before` (without) by test, channel and time; NaN where there
@@ -383,7 +202,7 @@ class Diagnosis:
         return effects_frame(self)
 
     def plot(self, tests: Collection[str] | None = None) -> "list[Axes]":
-        """Plot measured motion, and simulated motion before and after the effects were added; held-out tests first.
+        """Plot measured motions, and simulated ones without and with the effects; held-out tests first.
 
         Args:
             tests: Names of the tests to show; None: all.

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibration.discovery.diagnosis import HELD_OUT_ERROR, Finding
+from calibration.discovery.diagnosis import Finding
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
+from calibration.discovery.reported_effects import HELD_OUT_ERROR
 from calibration.formatting import listed, number, percent
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS

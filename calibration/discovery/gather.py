@@ -17,12 +17,15 @@ from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import DecayProblem, crossing_period, gather_decays
-from calibration.residuals.measured_seas import Options, moving_channels, sea_step, seas_of
+from calibration.residuals.measured_seas import sea_step, seas_of
+from calibration.residuals.moving_channels import moving_channels
 from calibration.residuals.run_segments import samples_after_transient
+from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.integrate import clock
+from jaxhydro.dynamics.irregular_simulation import excursion_of
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.simulate import excursion_of, memory_step
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
+from jaxhydro.dynamics.time_steps import memory_step
 from jaxhydro.environment import DOFS
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import IrregularSea
@@ -143,7 +146,7 @@ def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tup
     cut = cut_into_bands(n * step, step, n, BAND_COUNT, highest)
     names = [DOFS[dof] for dof in sea.dofs]
     turns = np.array(sea.dofs) >= 3
-    found = []
+    series = []
     for record, rows in zip(records, measured):
         motions, moves = (
             np.stack([band_powers(cut, values, TAPERED_SHARE) for values in rows]),
@@ -152,8 +155,8 @@ def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tup
         for name, values, turn in zip(names, rows, turns):
             # sway is no more to be followed than to what surge is
             one = _series(record, name, values, cut, motions[turns == turn].max(axis=0), sea.slow)
-            found.append(one if name in moves else replace(one, dof=0 * one.dof))
-    return found, FourierRows.of([cut] * len(found), n, TAPERED_SHARE)
+            series.append(one if name in moves else replace(one, dof=0 * one.dof))
+    return series, FourierRows.of([cut] * len(series), n, TAPERED_SHARE)
 
 
 def _series(
@@ -169,7 +172,7 @@ def _series(
 
 def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list[tuple[MotionSeries, Bands]], np.ndarray]:
     """Series of every decay, and standard deviations of the decays' own unknowns."""
-    found = []
+    series = []
     width = np.full((len(records), 3, len(data.dofs)), np.inf)
     for i, record in enumerate(records):
         n, dt = len(record.time), step_of(record.time)
@@ -180,14 +183,14 @@ def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list
             channel = DOFS[dof]
             if channel in record.values:
                 one = _series(record, channel, record.values[channel], cut, motion * float(data.unit[i, j]) ** 2)
-                found.append((one, cut))
+                series.append((one, cut))
             else:  # a row of nothing keeps the arrays' shape
                 nothing = cut._replace(member=np.zeros_like(cut.member))
                 none = np.ones(BAND_COUNT)
                 one = MotionSeries(record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * none, cut.low, cut.high, n, none)
-                found.append((one, nothing))
+                series.append((one, nothing))
             width[i, 2, j] = (MAX_OFFSET_SHARE * one.spread + 3 * one.noise / np.sqrt(n)) / float(data.unit[i, j])
-    return found, width.reshape(len(records), -1)
+    return series, width.reshape(len(records), -1)
 
 
 def _sea_record(

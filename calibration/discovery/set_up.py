@@ -21,7 +21,9 @@ from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
-from calibration.residuals.measured_seas import Options, moving_channels, sea_step, with_diffraction
+from calibration.residuals.measured_seas import sea_step, with_diffraction
+from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
@@ -69,7 +71,7 @@ class StudySetup(NamedTuple):
 
 def motions_of(campaign: Campaign) -> dict[str, float]:
     """Motions that the tests are about, with their largest standard deviation in a test (m, rad)."""
-    found: dict[str, float] = {}
+    motions: dict[str, float] = {}
     for record in campaign.records:
         if record.use == "ignore":
             continue
@@ -80,8 +82,8 @@ def motions_of(campaign: Campaign) -> dict[str, float]:
         else:
             continue
         for name in names:
-            found[name] = max(found.get(name, 0.0), float(np.std(record.values[name])))
-    return {dof: found[dof] for dof in DOFS if dof in found}
+            motions[name] = max(motions.get(name, 0.0), float(np.std(record.values[name])))
+    return {dof: motions[dof] for dof in DOFS if dof in motions}
 
 
 def set_up_study(

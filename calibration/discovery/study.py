@@ -18,7 +18,8 @@ from calibration.fitting.cores import cores
 from calibration.parameters.space import ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
 from calibration.residuals.decays import DecayProblem
-from calibration.residuals.measured_seas import Options, moving
+from calibration.residuals.moving_channels import moving
+from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.model import Model
 from jaxhydro.interrupts import stoppable_threads
 
@@ -117,15 +118,15 @@ class Study:
     @cached_property
     def frequency(self) -> np.ndarray:
         """Frequency (Hz) of every pair of rows: real and imaginary part of a Fourier line."""
-        found = []
+        frequencies = []
         if self.decays is not None:
             times = np.asarray(self.decays.data.time)
             steps = np.repeat([step_of(one.time) for one in self.decay_records], len(self.decays.data.dofs))
-            found.append((self.cuts[0], times.shape[1] * steps))
-        for record, cut in zip(self.seas, self.cuts[len(found) :]):
+            frequencies.append((self.cuts[0], times.shape[1] * steps))
+        for record, cut in zip(self.seas, self.cuts[len(frequencies) :]):
             length = record.measured.shape[-1] * float(record.times[1] - record.times[0])
-            found.append((cut, np.full(cut.members, length)))
-        return np.concatenate([cut.take % cut.lines / length[cut.take // cut.lines] for cut, length in found])
+            frequencies.append((cut, np.full(cut.members, length)))
+        return np.concatenate([cut.take % cut.lines / length[cut.take // cut.lines] for cut, length in frequencies])
 
     @cached_property
     def first_order(self) -> np.ndarray:
@@ -137,10 +138,10 @@ class Study:
     @cached_property
     def pooled(self) -> np.ndarray:
         """Degrees of freedom by pool (s, b), at the pool's first band."""
-        found = np.zeros_like(self.dof)
-        for into, dof, one in zip(found, self.dof, self.series):
+        totals = np.zeros_like(self.dof)
+        for into, dof, one in zip(totals, self.dof, self.series):
             np.add.at(into, one.pool, dof)
-        return found
+        return totals
 
     def by_region(self, values: np.ndarray) -> np.ndarray:
         """Sums by region (s, 3) of values by band (s, b): in waves mean, slower, rest; a decay is one region."""
@@ -192,18 +193,18 @@ class Study:
     @cached_property
     def limits(self) -> np.ndarray:
         """Smallest and largest step from the start along every direction (d, 2): bounds and plausible sizes."""
-        found = np.tile([-np.inf, np.inf], (len(self.names), 1))
-        for at, row in zip(found, self.directions):
+        limits = np.tile([-np.inf, np.inf], (len(self.names), 1))
+        for at, row in zip(limits, self.directions):
             moved = np.flatnonzero(row)
             if len(moved) == 1 and isinstance(by := self.space.free[k := int(moved[0])].transform, Scaled):
                 about = self.model.about(self.labels[k])
                 ends = np.array([by.inverse(end) for end in (about.lower, about.upper)])
                 at[:] = np.sort((ends - self.start[k]) / row[k])
         if self.size_limits is not None:
-            found = np.stack(
-                [np.maximum(found[:, 0], self.size_limits[:, 0]), np.minimum(found[:, 1], self.size_limits[:, 1])], 1
+            limits = np.stack(
+                [np.maximum(limits[:, 0], self.size_limits[:, 0]), np.minimum(limits[:, 1], self.size_limits[:, 1])], 1
             )
-        return found
+        return limits
 
     def value(self, label: str, x: np.ndarray) -> float:
         """A parameter (SI) at given coordinates (p,)."""
@@ -225,12 +226,12 @@ class Study:
 
         def of_decays() -> np.ndarray:
             assert self.decays is not None
-            found = np.asarray(decay_residuals(self.decays, x, jnp.asarray(place.own)))
-            return found.reshape(-1, found.shape[-1])
+            motions = np.asarray(decay_residuals(self.decays, x, jnp.asarray(place.own)))
+            return motions.reshape(-1, motions.shape[-1])
 
         def of_sea(record: SeaRecord) -> np.ndarray:
-            found = np.asarray(sea_residuals(record, x, self._steps(record, seas)))
-            return found.reshape(-1, record.measured.shape[-1])
+            motions = np.asarray(sea_residuals(record, x, self._steps(record, seas)))
+            return motions.reshape(-1, record.measured.shape[-1])
 
         with stoppable_threads(cores()) as pool:
             return [None if job is None else job.result() for job in self._parts(pool, of_decays, of_sea, seas)]
@@ -253,7 +254,7 @@ class Study:
 
     def linearise_all(self, jobs: Sequence[tuple[Point, Sequence[int]]], seas: SeaSelection = "fit") -> list[Linearisation]:
         """Residual and slopes at several points along some directions each, side by side."""
-        found: list[Linearisation] = []
+        linearisations: list[Linearisation] = []
         with stoppable_threads(cores()) as pool:
             begun = [[(mine, self._slopes(pool, place, mine, seas)) for mine in self._chunks(active)] for place, active in jobs]
             for (place, _), chunks in zip(jobs, begun, strict=True):
@@ -261,8 +262,8 @@ class Study:
                     self._linearisation(place, mine, [None if job is None else job.result() for job in parts])
                     for mine, parts in chunks
                 ]
-                found.append(reduce(Linearisation.joined_with, looks))
-        return found
+                linearisations.append(reduce(Linearisation.joined_with, looks))
+        return linearisations
 
     def _chunks(self, active: Sequence[int]) -> list[tuple[int, ...]]:
         """Directions in groups that are differentiated at a time; one empty group without any."""
@@ -292,8 +293,8 @@ class Study:
         basis[:, : len(active)] = self.directions[list(active)].T
         frame, own = Frame(jnp.asarray(place.x), jnp.asarray(basis)), jnp.asarray(place.own)
 
-        def flat(found: Any) -> tuple[np.ndarray, np.ndarray]:
-            residual, slopes = (np.asarray(one) for one in found)
+        def flat(parts: Any) -> tuple[np.ndarray, np.ndarray]:
+            residual, slopes = (np.asarray(one) for one in parts)
             return residual.reshape(-1, residual.shape[-1]), slopes.reshape(-1, *slopes.shape[-2:])
 
         def of_decays() -> tuple[np.ndarray, np.ndarray]:

@@ -20,8 +20,8 @@ from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.decays import DecayProblem, crossing_period, first_guess, gather_decays
 from calibration.result import Calibration, TestFit
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.simulate import memory_step
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
+from jaxhydro.dynamics.time_steps import memory_step
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
 from jaxhydro.errors import Problem as Wrong
@@ -113,8 +113,17 @@ def fit_of_decays(
 
 
 def labels_of(campaign: Campaign, declared: Model, moved: Sequence[str], free: Sequence[str] | None) -> tuple[str, ...]:
-    """The free parameters: those that `moved` motions are about, or the labels and patterns asked for. Raises InputError where
-    there are none."""
+    """Labels of the free parameters.
+
+    Args:
+        campaign: The campaign.
+        declared: The declared model.
+        moved: Released motions, whose parameters are free by default.
+        free: Labels and patterns in place of the manifest's; None: the manifest's.
+
+    Raises:
+        InputError: There is no free parameter.
+    """
     source, wish = str(campaign.folder / "campaign.yaml"), campaign.manifest.calibrate
     labels = match_free_labels(declared, moved, wish.free if free is None else free, wish.fixed, source)
     if not labels:
@@ -126,8 +135,17 @@ def labels_of(campaign: Campaign, declared: Model, moved: Sequence[str], free: S
 def space_of(
     campaign: Campaign, labels: Sequence[str], begin: Model, priors: Mapping[str, tuple[float, float]] | None = None
 ) -> ParameterSpace:
-    """Free parameters begun from a model's values, with the manifest's bounds and priors, and `priors` for others. Raises
-    InputError for what makes no sense."""
+    """Free parameters with the manifest's bounds and priors.
+
+    Args:
+        campaign: The campaign.
+        labels: Labels of the parameters.
+        begin: Model with the values to begin from.
+        priors: Mean and standard deviation by label, for parameters without a prior in the manifest.
+
+    Raises:
+        InputError: A bound or prior is impossible.
+    """
     wish = campaign.manifest.calibrate
     stated = {label: (prior.value, prior.standard_deviation) for label, prior in wish.priors.items()}
     source = str(campaign.folder / "campaign.yaml")
@@ -143,8 +161,15 @@ def conclude(campaign: Campaign, declared: Model, fit: Fit, seconds: float) -> C
 
 
 def held_out(campaign: Campaign, declared: Model, model: Model) -> list[TestFit]:
-    """The decays marked `holdout` with a calibrated model, and with that declared. The coefficients stay; releases and sensors'
-    offsets are each record's own."""
+    """Decays marked `holdout`, simulated with the calibrated and with the declared model.
+
+    Releases and offsets of sensors are fitted to each record; coefficients stay.
+
+    Args:
+        campaign: The campaign.
+        declared: The declared model.
+        model: The calibrated model.
+    """
     held = [record for record in campaign.used("holdout") if record.kind == "decay"]
     if not held:
         return []

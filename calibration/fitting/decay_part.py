@@ -136,13 +136,23 @@ class DecayPart(AbstractPart):
 
 
 def independent_observations(data: DecayData) -> np.ndarray:
-    """How many independent observations each record's window stands for when the model's error, not noise, is what is left:
-    four for every cycle of the released motion."""
+    """Number of independent observations in the window of each record: four for every cycle of the released motion.
+
+    It holds where residuals are the model's error, not noise.
+
+    Args:
+        data: The records.
+    """
     return 4 * (np.asarray(data.until) - np.asarray(data.time[:, 0])) / (2 * np.pi / np.asarray(data.pace))
 
 
 def scored_channels(records: Sequence[Record], data: DecayData) -> tuple[np.ndarray, np.ndarray]:
-    """Which record's which channel counts in J, and the standard deviation of every measured series (record, channel)."""
+    """Whether each channel of each record counts in the objective, and its standard deviation, (record, channel).
+
+    Args:
+        records: The records.
+        data: The records as arrays.
+    """
     counts = np.zeros((len(records), len(data.dofs)), dtype=bool)
     spread = np.ones((len(records), len(data.dofs)))
     for i, record in enumerate(records):

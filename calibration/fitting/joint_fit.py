@@ -20,9 +20,11 @@ from calibration.fitting.weighted_residuals import AbstractPart, Kind, Loss
 from calibration.formatting import listed, number, percent, with_deviation
 from calibration.notes import NoteKind, notes_of
 from calibration.residuals.abstract_residual import parameters_only
-from calibration.residuals.measured_seas import Options, Seas, moving_channels, options_of, sea_step, seas_of, with_diffraction
+from calibration.residuals.measured_seas import Seas, sea_step, seas_of, with_diffraction
+from calibration.residuals.moving_channels import moving_channels
 from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
 from calibration.residuals.static import set_up_offsets, set_up_periods
+from calibration.residuals.wave_options import Options, options_of
 from calibration.result import Calibration
 from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model

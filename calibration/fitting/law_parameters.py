@@ -7,8 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from calibration.residuals.measured_seas import Options, Seas
+from calibration.residuals.measured_seas import Seas
 from calibration.residuals.run_segments import sea_state
+from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents

@@ -26,19 +26,11 @@ from calibration.fitting.sea_remarks import sea_remarks
 from calibration.notes import NoteKind, notes_of
 from calibration.parameters.families import parameter_family
 from calibration.residuals.abstract_residual import parameters_only
-from calibration.residuals.measured_seas import (
-    Options,
-    Seas,
-    SeaTest,
-    compare,
-    moving_channels,
-    options_of,
-    sea_step,
-    seas_of,
-    with_diffraction,
-)
+from calibration.residuals.measured_seas import Seas, SeaTest, compare, sea_step, seas_of, with_diffraction
+from calibration.residuals.moving_channels import moving_channels
 from calibration.residuals.sea_errors import in_bands
 from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
+from calibration.residuals.wave_options import Options, options_of
 from calibration.result import BandError, Calibration, TestFit
 from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model

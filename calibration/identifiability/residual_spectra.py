@@ -15,8 +15,14 @@ from calibration.identifiability.information import MIN_VARIANCE
 
 
 class Periodogram(NamedTuple):
-    """Of one residual of n samples: frequency (f,) in Hz; power |FFT|^2 / n (f,), whose mean over all n frequencies is the mean
-    square; `freedom` (f,) in 0..1, the share that the fit has left of it; `number` (f,), how many of the n each stands for."""
+    """Periodogram of a residual of n samples.
+
+    Attributes:
+        frequency: Frequencies (Hz), (f,).
+        power: |FFT|^2 / n, (f,); its mean over all n frequencies is the mean square.
+        freedom: Fraction (0 to 1) of the power that the fit has left, (f,).
+        number: How many of the n frequencies each stands for, (f,).
+    """
 
     frequency: np.ndarray
     power: np.ndarray
@@ -25,7 +31,7 @@ class Periodogram(NamedTuple):
 
     @property
     def variance(self) -> float:
-        """Of the errors, from that of the residuals: the fit has taken away some."""
+        """Variance of the errors, from that of the residuals, of which the fit has taken away some."""
         return float(max((self.number * self.power).sum() / (self.number * self.freedom).sum(), MIN_VARIANCE))
 
 
@@ -48,8 +54,14 @@ class NoiseColour(NamedTuple):
 
 
 def periodogram(residual: np.ndarray, leverage: np.ndarray, step: float) -> Periodogram:
-    """Of a residual (n,) sampled every `step` s; `leverage` (n // 2 + 1,) is the share of a unit power at each frequency that
-    the fit absorbs: the diagonal of its hat matrix there."""
+    """Periodogram of a residual.
+
+    Args:
+        residual: The residual, (n,).
+        leverage: Fraction of a unit power at each frequency that the fit absorbs, (n // 2 + 1,): the diagonal of its hat
+            matrix there.
+        step: Sampling interval (s).
+    """
     n = len(residual)
     count = np.full(n // 2 + 1, 2.0)
     count[0] = 1.0
@@ -59,8 +71,17 @@ def periodogram(residual: np.ndarray, leverage: np.ndarray, step: float) -> Peri
 
 
 def fit_colours(groups: Sequence[Sequence[Periodogram]]) -> list[tuple[NoiseColour, np.ndarray]]:
-    """`whittle` of groups of residuals: of all together, as where a basin is not still, unless they differ by more than chance,
-    as where a model's error is in the motion that was released. Colour and variances by group."""
+    """Colour and variances of groups of residuals by `whittle`.
+
+    All groups have one colour, as where a basin is not still, unless they differ by more than chance, as where a model's error
+    is in the motion that was released.
+
+    Args:
+        groups: Periodograms by group.
+
+    Returns:
+        Colour and variances of each group.
+    """
     whole, apart = whittle([one for group in groups for one in group]), [whittle(group) for group in groups]
     if len(groups) == 1 or sum(one.misfit for one in apart) < whole.misfit:
         return [(one.colour, one.variance) for one in apart]
@@ -69,8 +90,14 @@ def fit_colours(groups: Sequence[Sequence[Periodogram]]) -> list[tuple[NoiseColo
 
 
 class SpectralFit(NamedTuple):
-    """Colour and variance (m2, rad2) of every residual; `misfit` is minus the log likelihood, and what the numbers in them cost
-    (half the logarithm of how many frequencies there are for each: Schwarz 1978, Annals of Statistics 6, 461-464)."""
+    """Colour and variances of residuals.
+
+    Attributes:
+        colour: Their colour.
+        variance: Variance of each (m², rad²).
+        misfit: Minus the log likelihood, and half the logarithm of the number of frequencies for each number fitted (Schwarz
+            1978, Annals of Statistics 6, 461-464).
+    """
 
     colour: NoiseColour
     variance: np.ndarray
@@ -78,8 +105,7 @@ class SpectralFit(NamedTuple):
 
 
 def whittle(found: Sequence[Periodogram]) -> SpectralFit:
-    """The colour of several residuals of one kind, and the variance of each: one for all of them, unless they differ by more
-    than chance.
+    """Colour of residuals of one kind, and their variances, one for all unless they clearly differ.
 
     Largest of -sum over frequencies of (d ln S + I / S) (Whittle 1953, Arkiv foer Matematik 2, 423-434), in which I is the
     power and d the degrees of freedom that the fit has left of it: E[I] = d S, and a gamma density of shape d in place of the

@@ -74,9 +74,16 @@ class ParameterSpace(NamedTuple):
 
 
 def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
-    """What decays in some degrees of freedom can be about: coefficients of the members, and the lumped damping and added
-    mass of those degrees of freedom. What is declared as zero is not there, and stays so; still water has no sea state, and
-    how drag depends on the motion (`drag_`) is free where it is asked for."""
+    """Labels of the parameters that are free by default in decays of some degrees of freedom.
+
+    They are coefficients of the members, and the lumped damping and added mass of these degrees of freedom. Parameters declared
+    as zero stay zero. Laws over the sea state mean nothing in still water. How drag depends on the motion (`drag_`) is free
+    only where it is asked for.
+
+    Args:
+        model: The declared model.
+        released: The degrees of freedom.
+    """
     digits = {str(DOFS.index(dof) + 1) for dof in released}
     labels, laws = [], law_labels(model)
     for label, value in model.values.items():

@@ -1,7 +1,7 @@
 """Figures of a calibration: tests, decay against amplitude, parameters."""
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -9,20 +9,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatter
 
-from calibration.decay_analysis.linear_quadratic import classical
 from calibration.formatting import number, readable_unit, signed_percent
+from calibration.plots.decay_figures import decay_figure
 from calibration.result import Calibration, Estimate, Series, TestFit
 from jaxhydro.analysis.spectral import power_spectrum
-from jaxhydro.dynamics.response import Cycles, decay_cycles
 from jaxhydro.environment import DOFS
 from jaxhydro.files import safe_name
+from jaxhydro.plots.spectrum_axes import Density, draw_densities, shade_bands
 from jaxhydro.plots.style import BEFORE, GREY, MEASURED, SIMULATED, WIDTH, header, stack
 from jaxhydro.units import for_people, unit_of
 
 _USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
-MAX_FREQUENCY, DECADES = 0.2, 4.5  # Hz that spectra are drawn to, and of their largest value downwards
-BAND_COLOURS = ("#ece3cf", "#dbe9ee")
-CLEAR_AMPLITUDE = 25  # times the noise: an amplitude from which decrement and period are well measured
+MAX_FREQUENCY = 0.2  # Hz, that spectra are drawn to
 
 
 def figures(calibration: Calibration) -> Iterator[tuple[str, str, Figure]]:
@@ -64,23 +62,35 @@ def spectra_figure(test: TestFit) -> Figure:
     figure, axes = stack([1.15] * len(shown))
     artists: dict[str, Artist] = {}
     for ax, series in zip(axes, shown):
-        channel, top, before = series.channel, 0.0, test.start.get(series.channel)
-        for shade, band in zip(BAND_COLOURS, test.bands[channel].values()):
-            ax.axvspan(band.low, band.high, color=shade, lw=0, zorder=0.5)
+        channel, before = series.channel, test.start.get(series.channel)
+        shade_bands(ax, {name: (band.low, band.high) for name, band in test.bands[channel].items()})
+        for band in test.bands[channel].values():
             write_band_error(ax, band.low, band.high, band.after)
-        rows = [("measured", series.measured, MEASURED, 1.5), ("calibrated", series.simulated, SIMULATED, 0.9)]
-        for label, values, colour, size in [*rows, *([("before", before, BEFORE, 0.9)] if before is not None else [])]:
-            found = power_spectrum(test.time, for_people(channel, values))
-            seen = (found.frequency > 0) & (found.frequency <= MAX_FREQUENCY)
-            artists[label] = ax.plot(found.frequency[seen], found.density[seen], color=colour, lw=size)[0]
-            top = max(top, float(found.density[seen].max()))
-        ax.set_yscale("log")
-        ax.set_ylim(top * 10**-DECADES, 2.5 * top)
-        ax.set_xlim(0, MAX_FREQUENCY)
-        ax.set_ylabel(f"{channel.capitalize()}\n({unit_of(channel)}²/Hz)")
+        densities = [
+            motion_density("measured", test, channel, series.measured, MEASURED, 1.5),
+            motion_density("calibrated", test, channel, series.simulated, SIMULATED, 0.9),
+        ]
+        if before is not None:
+            densities.append(motion_density("before", test, channel, before, BEFORE, 0.9))
+        artists |= draw_densities(ax, channel, densities, MAX_FREQUENCY)
     axes[-1].set_xlabel("Frequency (Hz)")
     header(figure, f"{test.id} ({_USE[test.use]})", artists)
     return figure
+
+
+def motion_density(label: str, test: TestFit, channel: str, values: np.ndarray, colour: str, width: float) -> Density:
+    """Spectral density of a motion of a test, to draw.
+
+    Args:
+        label: Name in the legend.
+        test: The test.
+        channel: The motion.
+        values: Its record (m, rad), (t,).
+        colour: Colour of the line.
+        width: Width of the line (points).
+    """
+    spectrum = power_spectrum(test.time, for_people(channel, values))
+    return Density(label, spectrum.frequency, spectrum.density, colour, width)
 
 
 def write_band_error(ax: Axes, low: float, high: float, error: float) -> None:
@@ -128,123 +138,6 @@ def compare_motions(
         label: ax.plot(time, for_people(name, values), color=colour, lw=width * size, zorder=order)[0]
         for label, values, colour, size, order in rows
     }
-
-
-class DecayCycles(NamedTuple):
-    """Half cycles of one test, amplitudes in m or deg.
-
-    Attributes:
-        measured, simulated, before: Half cycles of the record, of the calibrated model, of the model before.
-        fit: (2, 2) amplitudes and decrements at the ends of the line of linear and quadratic (P-Q) damping; None without one.
-        clear: Amplitude that is well above the noise.
-        held: Whether the test is held out.
-    """
-
-    measured: Cycles
-    simulated: Cycles
-    before: Cycles
-    fit: np.ndarray | None
-    clear: float
-    held: bool
-
-    @classmethod
-    def of(cls, test: TestFit) -> "DecayCycles":
-        """From a test's main channel."""
-        main = test.main
-
-        def cycles(values: np.ndarray | None) -> Cycles:
-            if values is None or not np.isfinite(values).all():
-                return Cycles(*[np.zeros(0)] * 4)
-            found = decay_cycles(test.time, values, main.noise)
-            return found._replace(amplitude=for_people(main.channel, found.amplitude))
-
-        return cls(
-            cycles(main.measured),
-            cycles(main.simulated),
-            cycles(test.start.get(main.channel)),
-            _fitted_line(test.time, main),
-            CLEAR_AMPLITUDE * float(for_people(main.channel, main.noise)),
-            test.use != "fit",
-        )
-
-    def well_seen(self, cycles: Cycles, quantity: str) -> np.ndarray:
-        """A quantity of the cycles that are clear of the noise; of the largest ones where none is."""
-        values, size = getattr(cycles, quantity), cycles.amplitude
-        return values[(size >= min(self.clear, 0.3 * size.max(initial=0.0))) & np.isfinite(values)]
-
-
-def _fitted_line(time: np.ndarray, series: Series) -> np.ndarray | None:
-    """Decrement per cycle of linear and quadratic damping, T p / 2 + 8/3 q a, at the smallest and largest amplitude a."""
-    try:
-        found = classical(time, series.measured, series.noise)
-    except ValueError:  # too few cycles
-        return None
-    ends = found.half_cycles.amplitude[[-1, 0]]
-    decrement = 0.5 * found.fit.period * found.fit.linear.value + 8 / 3 * found.fit.quadratic.value * ends
-    return np.stack([for_people(series.channel, ends), decrement])
-
-
-def decay_figure(dof: str, tests: list[TestFit]) -> Figure | None:
-    """Decrement and period against amplitude of all decays of one motion; None where none has a whole cycle.
-
-    Cycles of small amplitude scatter by the noise. The axes are for those of `CLEAR_AMPLITUDE` times the noise and more.
-    Cycles beyond the axes are triangles at the edge.
-    """
-    decays = [DecayCycles.of(test) for test in tests]
-    amplitudes = np.concatenate([decay.measured.amplitude for decay in decays])
-    if not len(amplitudes):
-        return None
-    figure, axes = stack([1.25, 1.25])
-    artists: dict[str, Artist] = {}
-    for ax, quantity in zip(axes, ("decrement", "period")):
-        low, high = _limits(decays, quantity)
-        for decay in decays:
-            _dots(ax, artists, decay, quantity, (low, high))
-            for cycles, colour, label in ((decay.simulated, SIMULATED, "calibrated"), (decay.before, BEFORE, "before")):
-                order = np.argsort(cycles.amplitude)
-                artists[label] = ax.plot(cycles.amplitude[order], getattr(cycles, quantity)[order], color=colour)[0]
-            if quantity == "decrement" and decay.fit is not None:
-                artists["P-Q fit"] = ax.plot(*decay.fit, color=MEASURED, lw=0.7, ls=(0, (5, 3)))[0]
-        ax.set_ylim(low, high)
-    if amplitudes.min() < 0.4 * amplitudes.max():
-        axes[0].set_xlim(0.0, 1.08 * amplitudes.max())
-    axes[0].set_ylabel("Decrement\nper cycle (-)")
-    axes[1].set_ylabel("Period (s)")
-    axes[1].set_xlabel(f"Amplitude of {dof} ({unit_of(dof)})")
-    names = [name for name in ("measured", "held out", "P-Q fit", "calibrated", "before") if name in artists]
-    header(figure, f"Decays in {dof}", {name: artists[name] for name in names})
-    return figure
-
-
-def _dots(ax: Axes, artists: dict[str, Artist], decay: DecayCycles, quantity: str, limits: tuple[float, float]) -> None:
-    """Measured cycles; those beyond the limits as triangles at the edge."""
-    low, high = limits
-    x, y = decay.measured.amplitude, getattr(decay.measured, quantity)
-    face = "white" if decay.held else MEASURED
-    look: dict[str, Any] = {"ms": 3, "mfc": face, "mec": MEASURED, "mew": 0.7, "ls": "", "zorder": 4, "clip_on": False}
-    for rows, marker in (((y >= low) & (y <= high), "o"), (y > high, "^"), (y < low, "v")):
-        if rows.any():
-            line = ax.plot(x[rows], np.clip(y[rows], low, high), marker=marker, **look)[0]
-            line.set_in_layout(False)
-            if marker == "o":
-                artists["held out" if decay.held else "measured"] = line
-
-
-def _limits(decays: list[DecayCycles], quantity: str) -> tuple[float, float]:
-    """Limits that hold the clear cycles: all calibrated ones, nine tenths of the measured ones, those before
-    calibration where they are not far off. Those of a period are at least 2 % apart."""
-    measured, simulated, before = (
-        np.concatenate([decay.well_seen(getattr(decay, which), quantity) for decay in decays])
-        for which in ("measured", "simulated", "before")
-    )
-    core = np.concatenate([np.quantile(measured, [0.05, 0.95]) if len(measured) else measured, simulated])
-    low, high = (float(core.min()), float(core.max())) if len(core) else (0.0, 1.0)
-    near = before[(before > 0.9 * low) & (before < 1.1 * high)]
-    low, high = float(near.min(initial=low)), float(near.max(initial=high))
-    if quantity == "decrement":
-        return min(0.0, 1.1 * low), max(1.15 * high, 1e-3)
-    room = max(0.2 * (high - low), 0.01 * (low + high) - 0.5 * (high - low))
-    return low - room, high + room
 
 
 def parameters_figure(parameters: list[Estimate]) -> Figure:

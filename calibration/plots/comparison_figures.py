@@ -12,16 +12,16 @@ from calibration.plots.calibration_figures import write_band_error
 from calibration.residuals.measured_seas import SeaTest
 from calibration.residuals.sea_errors import channels, density, in_bands, moving
 from jaxhydro.analysis.sea_statistics import bands_of
-from jaxhydro.analysis.spectral import transfer_function
+from jaxhydro.analysis.transfer_functions import transfer_function
 from jaxhydro.files import safe_name
+from jaxhydro.plots.seas import about_highest_crest
+from jaxhydro.plots.spectrum_axes import Density, draw_densities, shade_bands
 from jaxhydro.plots.style import MEASURED, SIMULATED, header, stack
 from jaxhydro.units import unit_of
 
 MAX_FREQUENCY = 0.2  # Hz, that spectra are drawn to; of waves shorter than 10 s 2.5 times their peak
-DECADES = 4.5  # of a spectrum, under its largest value
 MIN_WAVE_DENSITY = 0.02  # of the waves' largest density, where motions per metre of wave are drawn
 EXCERPT_LENGTH = 400.0  # s about the highest crest
-LOW_BAND, WAVE_BAND = "#ece3cf", "#dbe9ee"
 
 
 def figures(tests: Sequence[SeaTest]) -> Iterator[tuple[str, str, Figure]]:
@@ -55,23 +55,16 @@ def spectra_figure(test: SeaTest, names: Sequence[str] | None = None, title: str
     artists: dict[str, Artist] = {}
     errors = in_bands(test) if test.fit.kind == "irregular" else {}
     for ax, name in zip(axes, shown):
-        for band, (low, high) in bands_of(name, test.peak_period).items() if test.fit.kind == "irregular" else ():
-            label, colour = ("low frequency", LOW_BAND) if band == "low_frequency" else ("wave frequency", WAVE_BAND)
-            artists[label] = ax.axvspan(low, high, color=colour, lw=0, zorder=0.5)
-            write_band_error(ax, low, high, errors[name][band].error)
-        top = 0.0
-        for label, x, colour, width in zip(("measured", "simulated"), both[name], (MEASURED, SIMULATED), (1.4, 0.8)):
-            found = density(test, x)
-            seen = (found.frequency > 0) & (found.frequency <= highest)
-            artists[label] = ax.plot(found.frequency[seen], found.density[seen], color=colour, lw=width)[0]
-            top = max(top, float(found.density[seen].max()))
-        if top > 0:
-            ax.set_yscale("log")
-            ax.set_ylim(top * 10**-DECADES, top * 2.5)
-            ax.set_yticks([10.0**n for n in range(-15, 12) if top * 10**-DECADES <= 10.0**n <= top * 2.5][::2])
-            ax.minorticks_off()
-        ax.set_xlim(0, highest)
-        ax.set_ylabel(f"{name.capitalize()}\n({unit_of(name)}²/Hz)")
+        bands = bands_of(name, test.peak_period) if test.fit.kind == "irregular" else {}
+        artists |= shade_bands(ax, bands)
+        for band, limits in bands.items():
+            write_band_error(ax, *limits, errors[name][band].error)
+        measured, simulated = (density(test, x) for x in both[name])
+        densities = [
+            Density("measured", measured.frequency, measured.density, MEASURED, 1.4),
+            Density("simulated", simulated.frequency, simulated.density, SIMULATED, 0.8),
+        ]
+        artists |= draw_densities(ax, name, densities, highest)
     axes[-1].set_xlabel("Frequency (Hz)")
     order = ["measured", "simulated", "low frequency", "wave frequency"]
     header(figure, title or _title(test), {label: artists[label] for label in order if label in artists}, 2)
@@ -87,17 +80,17 @@ def response_figure(test: SeaTest) -> Figure | None:
     if test.fit.kind != "irregular" or not shown:
         return None
     try:
-        found = {
+        transfers = {
             name: [transfer_function(test.fit.time, wave, x) for wave, x in zip(both["wave"], both[name])] for name in shown
         }
     except ValueError:  # fewer than two segments
         return None
-    energy = np.interp(found[shown[0]][0].frequency, *density(test, test.wave)[:2])
+    energy = np.interp(transfers[shown[0]][0].frequency, *density(test, test.wave)[:2])
     gap = np.where(energy > MIN_WAVE_DENSITY * energy.max(), 0.0, np.nan)
     figure, axes = stack([0.8, 0.4] * len(shown))
     artists: dict[str, Artist] = {}
     for i, name in enumerate(shown):
-        for label, one, colour, width in zip(("measured", "simulated"), found[name], (MEASURED, SIMULATED), (1.4, 0.8)):
+        for label, one, colour, width in zip(("measured", "simulated"), transfers[name], (MEASURED, SIMULATED), (1.4, 0.8)):
             artists[label] = axes[2 * i].plot(one.frequency, one.amplitude + gap, color=colour, lw=width)[0]
             axes[2 * i + 1].plot(one.frequency, one.coherence + gap, color=colour, lw=width)
         axes[2 * i].set_ylim(bottom=0)
@@ -112,9 +105,7 @@ def response_figure(test: SeaTest) -> Figure | None:
 def excerpt_figure(test: SeaTest) -> Figure:
     """Part of the record, about the wave's highest crest."""
     both, time = channels(test), test.fit.time
-    crest, width = float(time[np.argmax(test.wave)]), min(EXCERPT_LENGTH, float(time[-1] - time[0]))
-    begin = min(max(crest - 0.5 * width, time[0]), time[-1] - width)
-    seen = (time >= begin) & (time <= begin + width)
+    seen = about_highest_crest(time, test.wave, EXCERPT_LENGTH, float(time[0]))
     shown = ["wave", *moving(test)]
     figure, axes = stack([0.8] * len(shown))
     artists: dict[str, Artist] = {}

@@ -9,22 +9,22 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from calibration.discovery.diagnosis import Diagnosis, Effect
+from calibration.discovery.diagnosis import Diagnosis
 from calibration.discovery.effects.effect_names import effect_in_words
+from calibration.discovery.reported_effects import Effect
 from calibration.formatting import percent
-from calibration.plots.calibration_figures import BAND_COLOURS, DECADES, MAX_FREQUENCY
+from calibration.plots.calibration_figures import MAX_FREQUENCY, motion_density
 from calibration.plots.search_figures import MIN_SHOWN_GAIN, anatomy_figure, latent_figure, scores_figure
 from calibration.result import Calibration, Series, TestFit
 from calibration.vocabulary import USE
-from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.environment import DOFS
 from jaxhydro.files import safe_name
+from jaxhydro.plots.spectrum_axes import draw_densities, shade_bands
 from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, WIDTH, header, stack
 from jaxhydro.units import for_people, unit_of
 
 EXCERPT_LENGTHS = {"surge": 1200.0, "sway": 1200.0, "yaw": 1200.0}  # s of a record in waves that are shown
 SHORT_EXCERPT = 600.0  # of the other motions
-BAND_NAMES = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
 
 
 def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, str, Figure]]:
@@ -201,28 +201,14 @@ def spectra_figure(test: TestFit) -> Figure:
     figure, axes = stack([1.1] * len(shown))
     artists: dict[str, Artist] = {}
     for ax, series in zip(axes, shown):
-        channel, top, before = series.channel, 0.0, test.start.get(series.channel)
-        for shade, (band, limits) in zip(BAND_COLOURS, test.bands.get(channel, {}).items()):
-            artists[BAND_NAMES.get(band, band)] = ax.axvspan(limits.low, limits.high, color=shade, lw=0, zorder=0.5)
-        rows = [
-            ("measured", series.measured, MEASURED, 1.6),
-            ("before", before, BEFORE, 1.0),
-            ("after", series.simulated, SIMULATED, 0.8),
-        ]
-        for label, values, colour, size in rows:
-            if values is None:
-                continue
-            found = power_spectrum(test.time, for_people(channel, values))
-            seen = (found.frequency > 0) & (found.frequency <= MAX_FREQUENCY)
-            artists[label] = ax.plot(found.frequency[seen], found.density[seen], color=colour, lw=size)[0]
-            top = max(top, float(found.density[seen].max()))
-        if top > 0:
-            ax.set_yscale("log")
-            ax.set_ylim(top * 10**-DECADES, 2.5 * top)
-            ax.set_yticks([10.0**n for n in range(-15, 12) if top * 10**-DECADES <= 10.0**n <= top * 2.5][::2])
-            ax.minorticks_off()
-        ax.set_xlim(0, MAX_FREQUENCY)
-        ax.set_ylabel(f"{channel.capitalize()}\n({unit_of(channel)}²/Hz)")
+        channel, before = series.channel, test.start.get(series.channel)
+        bands = test.bands.get(channel, {})
+        artists |= shade_bands(ax, {name: (band.low, band.high) for name, band in bands.items()})
+        densities = [motion_density("measured", test, channel, series.measured, MEASURED, 1.6)]
+        if before is not None:
+            densities.append(motion_density("before", test, channel, before, BEFORE, 1.0))
+        densities.append(motion_density("after", test, channel, series.simulated, SIMULATED, 0.8))
+        artists |= draw_densities(ax, channel, densities, MAX_FREQUENCY)
     axes[-1].set_xlabel("Frequency (Hz)")
     order = ["measured", "low frequency", "before", "wave frequency", "after"]  # a legend is filled column by column
     told = {name: artists[name] for name in order if name in artists}

@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
-from calibration.discovery.diagnosis import Diagnosis, Finding, LatentForce, Score
+from calibration.discovery.diagnosis import Diagnosis, Finding, Score
+from calibration.discovery.reported_forces import LatentForce
 from calibration.formatting import PREFIXES
 from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WAVE, WIDTH, header, stack
 from jaxhydro.units import for_people, unit_of

@@ -14,7 +14,8 @@ from calibration.campaign.signals import dominant_period, wave_height
 from calibration.formatting import counted, listed, number, signed_percent
 from calibration.vocabulary import KINDS, USE, Rows
 from jaxhydro.analysis.sea_statistics import record_peak_period
-from jaxhydro.dynamics.statics import Modes, equilibrium
+from jaxhydro.dynamics.natural_modes import Modes
+from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.platform.schema import builtin_platforms, builtin_text
 from jaxhydro.units import unit_of
 

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 
-from calibration.discovery.diagnosis import HELD_OUT_ERROR, IMPLAUSIBLE_SIZE, Outcome
+from calibration.discovery.diagnosis import Outcome
 from calibration.discovery.effects.effect_names import capitalised, effect_in_words
+from calibration.discovery.reported_effects import HELD_OUT_ERROR, IMPLAUSIBLE_SIZE
 from calibration.formatting import listed, number, percent, quantity, quantity_range
 from calibration.results.calibration_file import Parameter
 from calibration.results.diagnosis_file import DiagnosisFile, Evidence, FoundEffect

@@ -88,8 +88,15 @@ class RunInBlocks(NamedTuple):
 
 
 def smoothed(times: np.ndarray, x: np.ndarray, at: float) -> tuple[np.ndarray, np.ndarray]:
-    """Position and rate of a record at a time, by a quadratic through what is near; and what a prior leaves them: a share of
-    the deviations of position and rate, and the scatter about the quadratic."""
+    """Position and rate of a record at a time, by a quadratic through the samples near it, and their prior widths.
+
+    The widths are a share of the standard deviations of position and rate, and the scatter about the quadratic.
+
+    Args:
+        times: Sample times (s), (t,).
+        x: Record (m, rad), (t,).
+        at: The time (s).
+    """
     rates = np.gradient(x, times)
     deviation, rate = float(x.std()), float(rates.std())
     pace = float(np.gradient(rates, times).std()) / rate

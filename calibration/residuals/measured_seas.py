@@ -5,9 +5,9 @@ file. Everything is SI at full scale.
 """
 
 import dataclasses
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, TypeAlias, get_args
+from typing import Any, NamedTuple, TypeAlias
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -19,81 +19,27 @@ from calibration.campaign.manifest import WAVE
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run, runs
 from calibration.campaign.second_order_hint import second_order_hint
-from calibration.campaign.wave_band import wave_band
+from calibration.residuals.moving_channels import moving_channels
 from calibration.residuals.run_segments import run_segments, samples_after_transient, simulate_segments
+from calibration.residuals.wave_options import Options
 from calibration.result import Series, TestFit
 from jaxhydro.analysis.sea_statistics import record_peak_period
-from jaxhydro.choices import check
-from jaxhydro.dynamics.conventions import allowed_values
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.sea_of_request import share_within
-from jaxhydro.dynamics.simulate import largest_step
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.dynamics.table_ranges import heading_fault
+from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.hull.hull import Hull
 from jaxhydro.waves.irregular import separated_record
-from jaxhydro.waves.irregular_sea import Acting, IrregularSea
-from jaxhydro.waves.sea import Stretching
+from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_limits import sea_limits
-from jaxhydro.waves.second_order import KINDS, Kind
 
 MAX_MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
 MIN_BAND_SHARE = 0.95  # of its variance, that should lie in the band
 NO_ZERO = "the campaign states no `zero`: motions are taken as measured from the reference position"
-
-
-@dataclass(frozen=True)
-class Options:
-    """How waves are made and act. Frequencies (Hz, full scale) bound the first order; diffraction None: as the platform says.
-
-    In the default band: below it a sea has no first order worth the name, and what a gauge reads there is bound, or the basin's
-    own; above, waves are shorter than 17 m, and second order ceases to make sense of a record (it need not converge). `kinds`
-    of pairs bind at second order, differences of frequencies up to `highest_difference` (Hz; None: all), and act as `acting`
-    says, as in `IrregularSea`.
-    """
-
-    order: Literal[1, 2] = 2
-    stretching: Stretching = "vertical"
-    diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None = None
-    low: float = 0.03
-    cutoff: float = 0.3
-    kinds: tuple[Kind, ...] = KINDS
-    highest_difference: float | None = None
-    acting: Acting = "everywhere"
-
-    def __post_init__(self) -> None:
-        """Raises UnknownName for another order, stretching, diffraction, kind or place of action."""
-        check(order=(self.order, (1, 2)), stretching=(self.stretching, get_args(Stretching)))
-        check(diffraction=(self.diffraction, (*allowed_values("diffraction"), None)), acting=(self.acting, get_args(Acting)))
-        for kind in self.kinds:
-            check(kinds=(kind, KINDS))
-
-
-def options_of(campaign: Campaign) -> Options:
-    """Default options of a campaign's seas where a command says nothing: its band, and waves as its `records` state."""
-    manifest, stated = campaign.manifest, campaign.manifest.records
-    low, cutoff = wave_band(manifest, campaign.model, campaign.records)
-    highest = None if stated.highest_difference is None else stated.highest_difference / manifest.scale**0.5
-    return Options(
-        order=stated.order, low=low, cutoff=cutoff, kinds=stated.kinds, highest_difference=highest, acting=stated.acting
-    )
-
-
-def non_default_options(options: Options, asked: Collection[str] = (), usual: Options = Options()) -> str:
-    """Options of seas that differ from the `usual` ones, in words; those `asked` for are left aside."""
-    words = []
-    of_second = {
-        "kinds": f"bound waves at {' and '.join(f'{kind}s' for kind in options.kinds)} of frequencies only",
-        "highest_difference": f"differences up to {options.highest_difference or 0:.3g} Hz",
-        "acting": f"bound waves act {options.acting}",
-    }
-    for name in (field.name for field in dataclasses.fields(options) if field.name not in asked):
-        if (value := getattr(options, name)) != getattr(usual, name) and (options.order == 2 or name not in of_second):
-            words.append(of_second.get(name, f"{name}: {value:.3g} Hz" if isinstance(value, float) else f"{name}: {value}"))
-    return ", ".join(words)
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +101,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         raise InputError(run.file, [Problem("order", "1 in a sea of several headings, as its test states", f"{options.order}")])
     inside = share_within(run.wave, run.step, options.low, options.cutoff)
     try:
-        found = separated_record(
+        separated = separated_record(
             run.time,
             run.wave,
             environment,
@@ -170,7 +116,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     except ValueError as error:
         expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
         raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
-    waves, notes = found.waves, []
+    waves, notes = separated.waves, []
     if run.directions is not None:
         waves = run.directions.turned(waves, run.position)
         notes.append(
@@ -187,9 +133,9 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         acting=options.acting,
     )
     band = f"{options.low:g} to {options.cutoff:g} Hz"
-    if found.mismatch > MAX_MISMATCH:
+    if separated.mismatch > MAX_MISMATCH:
         notes.append(
-            f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "
+            f"{run.file}: first and second order miss {100 * separated.mismatch:.2g} % of the wave record from {band} "
             "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it"
         )
     if inside < MIN_BAND_SHARE:
@@ -202,7 +148,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         count = float(run.time[-1] - run.time[0]) / period
         limits = sea_limits(4 * float(np.std(run.wave)), period, environment, options.order, count)
         notes += [f"{run.file}: {one.text}" for one in limits]
-    return RunSea(sea, found.mismatch, found.rounds, inside, tuple(notes))
+    return RunSea(sea, separated.mismatch, separated.rounds, inside, tuple(notes))
 
 
 def with_diffraction(model: Model, options: Options) -> Model:
@@ -269,9 +215,9 @@ def compare(
                 motion = np.full((len(run.time), 6), np.nan)
                 times = run.time[: part.end + 1]
                 readings = _observed(model, found_there.grid, jnp.asarray(times[part.begin :]), origin, in_waves=True)
-                motion[part.begin : part.end + 1] = there = np.asarray(readings)
-                if not np.isfinite(there).all():
-                    first = times[part.begin + np.argmin(np.isfinite(there).all(axis=1))]
+                motion[part.begin : part.end + 1] = samples = np.asarray(readings)
+                if not np.isfinite(samples).all():
+                    first = times[part.begin + np.argmin(np.isfinite(samples).all(axis=1))]
                     raise Diverged(f"{run.file}: the motion grows beyond all bounds at {first:.4g} s")
                 wave = one.sea.gauge(times[part.begin :], run.position)
                 wave = np.concatenate([np.full(part.begin, np.nan), wave])
@@ -291,25 +237,10 @@ class Diverged(ArithmeticError):
     """A simulated motion that is no result."""
 
 
-MOVING_SHARE = 0.2  # of the largest motion of its unit: what moves less is in the files, and neither in tables nor fitted
-
-
-def moving_channels(motions: Mapping[str, np.ndarray]) -> list[str]:
-    """The motions that are large beside others of their unit."""
-    return moving({name: float(np.std(values)) for name, values in motions.items()})
-
-
-def moving(size: Mapping[str, float]) -> list[str]:
-    """The same, by standard deviations (m, rad)."""
-    angle = {name: DOFS.index(name) > 2 for name in size}
-    largest = {kind: max((size[n] for n in size if angle[n] == kind), default=0.0) for kind in (False, True)}
-    return [name for name in size if size[name] >= MOVING_SHARE * largest[angle[name]]]
-
-
 def _moving(test: SeaTest) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Measured and simulated motion by channel, of those that move in the simulation."""
-    moving_ones = moving_channels({one.channel: one.simulated for one in test.fit.series})
-    return {one.channel: (one.measured, one.simulated) for one in test.fit.series if one.channel in moving_ones}
+    """Measured and simulated motion by channel, for channels that move in the simulation."""
+    large = moving_channels({series.channel: series.simulated for series in test.fit.series})
+    return {series.channel: (series.measured, series.simulated) for series in test.fit.series if series.channel in large}
 
 
 def peak_period(run: Run, record: Record, scale: float) -> float:

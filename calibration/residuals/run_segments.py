@@ -9,8 +9,8 @@ import numpy as np
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from jaxhydro.analysis.spectral import power_spectrum
+from jaxhydro.dynamics.irregular_simulation import IrregularSimulation, simulate_irregular
 from jaxhydro.dynamics.model import Model, State
-from jaxhydro.dynamics.simulate import IrregularSimulation, simulate_irregular
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import SeaState, peak_period
@@ -124,9 +124,9 @@ def simulate_segments(
     for i, part in enumerate(parts):
         here = model if part.state is None else model.in_sea(part.state)
         times = jnp.asarray(run.time[part.begin : part.end + 1])
-        found = simulate_irregular(here, sea, rest if start is None else start, times, step, margin=margin)
-        yield SimulatedSegment(part, found, start)
+        simulation = simulate_irregular(here, sea, rest if start is None else start, times, step, margin=margin)
+        yield SimulatedSegment(part, simulation, start)
         if i + 1 < len(parts):
             after = parts[i + 1].begin - part.begin
-            position, rate = found.response.position[after], found.response.rate[after]
+            position, rate = simulation.response.position[after], simulation.response.rate[after]
             start = State(position, model.body_velocity(position, rate), rest.memory)

@@ -5,7 +5,8 @@ import math
 
 import numpy as np
 
-from calibration.residuals.measured_seas import SeaTest, moving_channels
+from calibration.residuals.measured_seas import SeaTest
+from calibration.residuals.moving_channels import moving_channels
 from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.analysis.spectral import SEGMENT, PowerSpectrum, band_integral, power_spectrum
 from jaxhydro.units import for_people

@@ -19,14 +19,16 @@ from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import AbstractGroupedResidual
-from calibration.residuals.measured_seas import Options, Seas, moving_channels, peak_period
+from calibration.residuals.measured_seas import Seas, peak_period
+from calibration.residuals.moving_channels import moving_channels
 from calibration.residuals.run_segments import run_segments, samples_after_transient, simulate_segments
+from calibration.residuals.wave_options import Options
 from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.analysis.spectral import SEGMENT, band_weights
 from jaxhydro.dynamics.integrate import integrate
+from jaxhydro.dynamics.irregular_simulation import farthest
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import observe
-from jaxhydro.dynamics.simulate import farthest
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.environment import DOFS
 from jaxhydro.waves.sea_state import SeaState
@@ -73,10 +75,18 @@ class TestMotion(eqx.Module):
 
 
 class SeaRun(eqx.Module):
-    """One file, or a stretch of it: its sea on the clock of the time integration, and what was measured at `times` (s).
+    """One file of a test in waves, or a stretch of it.
 
-    It starts at rest where `start` is None. `state` is its sea state where the model depends on that: stretches begin as the
-    model that the problem was posed for leaves the one before, which a test's transient forgets.
+    A stretch begins where the model that the problem was set up for leaves the stretch before. A test's transient forgets that.
+
+    Attributes:
+        sea: Sea on the clock of the time integration.
+        times: Times of the measured samples (s), (t,).
+        step: Time step (s).
+        pieces: Motions of the tests in it.
+        start: Initial state; None: at rest.
+        state: Sea state, where the model depends on it; else None.
+        steps: Number of time steps.
     """
 
     sea: SupportSea
@@ -134,13 +144,22 @@ class SeaProblem(AbstractGroupedResidual):
         return self.objective not in ("bands", "spectrum") or piece.energies is None
 
     def residuals(self, x: Float[Array, " p"]) -> tuple[Float[Array, " _"], ...]:
-        """In one group ln(simulated / measured energy) by test, motion and band or cell of one; in others, motion by motion,
-        simulated less measured over the measured standard deviation and the root of the number of samples, each about its
-        mean."""
+        """Residuals in groups: one of energies, and one for each motion.
+
+        Energies: ln(simulated / measured) by test, motion and band or cell of a band. Motions: simulated less measured, each
+        about its mean, over the measured standard deviation and the root of the number of samples.
+
+        Args:
+            x: Coordinates of the parameters, (p,).
+        """
         return self.residuals_and_reach(x)[0]
 
     def residuals_and_reach(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
-        """`residuals`, and whether the hull stays in the box that every sea was prepared for: beyond, its flow is wrong."""
+        """`residuals`, and whether the hull stays in the box of every sea, beyond which the flow is wrong.
+
+        Args:
+            x: Coordinates of the parameters, (p,).
+        """
         energies, motions = [], []
         found = self.motions(x)
         far = [farthest(one, self.points, run.sea) - run.sea.half for (one, _), run in zip(found, self.runs, strict=True)]

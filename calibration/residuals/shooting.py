@@ -27,16 +27,22 @@ from calibration.residuals.abstract_residual import AbstractResidual, Unknowns
 from calibration.residuals.blocks import Blocks, RunInBlocks
 from calibration.residuals.seas import SeaProblem, SeaRun
 from jaxhydro.dynamics.integrate import EXTRA_STEPS, Grid, integrate, states
+from jaxhydro.dynamics.irregular_simulation import farthest
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import motion_behind, observe
-from jaxhydro.dynamics.simulate import farthest
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
 from jaxhydro.environment import DOFS
 
 
 class BlockResiduals(NamedTuple):
-    """What blocks come to: residuals, where they begin and where they are when the next one begins (m, rad), and how far the
-    hull goes beyond the sea's box (m)."""
+    """Residuals and ends of the blocks of a run.
+
+    Attributes:
+        residual: Residuals by block, channel and time.
+        first: Motions at the start of each block (m, rad).
+        last: Motions when the next block begins (m, rad).
+        beyond: Distance that the hull goes beyond the sea's box (m).
+    """
 
     residual: Float[Array, "b c t"]
     first: Float[Array, "b c"]
@@ -78,8 +84,8 @@ class BlockProblem(AbstractResidual):
         """With what is not fitted where the continuous runs of other coefficients are."""
         model = self.space.model(self.model, x)
         paths = [_continuous(model, run) for run in self.sea.runs]
-        found = [jax.tree.map(lambda leaf, b=b: leaf[b.begin], path) for path, b in zip(paths, self.blocks, strict=True)]
-        return eqx.tree_at(lambda problem: [blocks.state for blocks in problem.blocks], self, found)
+        states = [jax.tree.map(lambda leaf, b=b: leaf[b.begin], path) for path, b in zip(paths, self.blocks, strict=True)]
+        return eqx.tree_at(lambda problem: [blocks.state for blocks in problem.blocks], self, states)
 
     def simulated(
         self, x: Float[Array, " p"], constants: Float[Array, " m"], own: Float[Array, " o"], block: Blocks, run: SeaRun

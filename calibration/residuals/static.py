@@ -14,7 +14,8 @@ from calibration.campaign.records import Record
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import AbstractGroupedResidual
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.statics import characteristic_length, equilibrium, held_at, linearised, strain_energy
+from jaxhydro.dynamics.natural_modes import strain_energy
+from jaxhydro.dynamics.statics import characteristic_length, equilibrium, held_at, linearised
 from jaxhydro.environment import DOFS
 
 MODE_SHARE = 0.7  # of a mode's largest share of strain energy: surge and sway of one period may come mixed
@@ -80,8 +81,10 @@ def set_up_offsets(model: Model, records: Sequence[Record], space: ParameterSpac
 
 
 class PeriodProblem(AbstractGroupedResidual):
-    """Stated natural periods: ln(T / stated) over its relative standard deviation. T is that of the undamped natural mode in
-    which the motion has the largest strain energy (`natural_modes`)."""
+    """Residuals of stated natural periods: ln(T / stated) over the relative standard deviation.
+
+    T is the period of the undamped natural mode in which the motion has the largest strain energy (`natural_modes`).
+    """
 
     model: Model
     space: ParameterSpace = eqx.field(static=True)
@@ -100,10 +103,20 @@ class PeriodProblem(AbstractGroupedResidual):
 
 
 def natural_period(model: Model, dof: int) -> Float[Array, ""]:
-    """The period of `natural_modes(model).of`, differentiable: T = 2 pi (l M r / l K r)^0.5, l and r the left and right
-    eigenvectors of M^-1 K, whose own change is of second order in T (Fox and Kapoor 1968, AIAA Journal 6, 2426-2429).
+    """Natural period (s) of a motion as `natural_modes(model).of`, differentiable.
 
-    They come from the symmetric part of K, and by two inverse iterations from K itself. NaN where nothing restores the motion.
+    T = 2 pi (l M r / l K r)^0.5, with l and r the left and right eigenvectors of M^-1 K, whose own change is of second order
+    in T. They come from the symmetric part of K, and by two inverse iterations from K itself.
+
+    Args:
+        model: The platform.
+        dof: Number of the motion.
+
+    Returns:
+        The period; NaN where nothing restores the motion.
+
+    References:
+        Fox and Kapoor 1968, AIAA Journal 6, 2426-2429.
     """
     mass, stiffness = linearised(model, equilibrium(model))
     m, k = jax.lax.stop_gradient((mass, stiffness))

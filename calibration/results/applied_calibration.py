@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from calibration.residuals.measured_seas import Options
+from calibration.residuals.wave_options import Options
 from calibration.results.calibration_file import CalibrationFile, file_error, read_saved
 from calibration.results.strip_conventions import StripConventions
 from jaxhydro.dynamics.model import Model

@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from calibration.campaign.manifest import Use
 from calibration.notes import NoteKind
-from calibration.residuals.measured_seas import Options
+from calibration.residuals.wave_options import Options
 from calibration.results.result_folder import DIAGNOSIS_FILE, RESULT_FILE, Figure
 from calibration.results.strip_conventions import StripConventions
 from jaxhydro.errors import InputError, NonNegative, Number, Positive, Problem, suggest_path, validate
@@ -168,7 +168,7 @@ class TestDescription(ResultModel):
 
 
 class SeaOptions(ResultModel):
-    """How waves were made and act. See `calibration.residuals.measured_seas.Options`."""
+    """How waves were made and act. See `calibration.residuals.wave_options.Options`."""
 
     order: Literal[1, 2]
     stretching: Stretching

@@ -11,7 +11,7 @@ from jaxhydro.result_model import ResultModel
 
 
 class Evidence(ResultModel):
-    """Evidence for an effect. See `calibration.discovery.diagnosis.Evidence`."""
+    """Evidence for an effect. See `calibration.discovery.reported_effects.Evidence`."""
 
     score: Number | None
     delta_bic: Number | None
@@ -23,7 +23,7 @@ class Evidence(ResultModel):
 
 
 class PlausibleSizeRange(ResultModel):
-    """Sizes (SI) that a parameter can plausibly have. See `calibration.discovery.diagnosis.PlausibleRange`."""
+    """Sizes (SI) that a parameter can plausibly have. See `calibration.discovery.reported_effects.PlausibleRange`."""
 
     lower: Number
     upper: Number
@@ -32,7 +32,7 @@ class PlausibleSizeRange(ResultModel):
 
 
 class FoundEffect(ResultModel):
-    """An effect that was found. See `calibration.discovery.diagnosis.Effect`."""
+    """An effect that was found. See `calibration.discovery.reported_effects.Effect`."""
 
     effect: str
     degree_of_freedom: str | None = None

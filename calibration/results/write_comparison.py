@@ -11,8 +11,9 @@ import xarray as xr
 
 import jaxhydro
 from calibration.campaign.signals import wave_height
-from calibration.residuals.measured_seas import Comparison, Options, SeaTest
+from calibration.residuals.measured_seas import Comparison, SeaTest
 from calibration.residuals.sea_errors import WELCH, amplitude, channels, in_bands, moving
+from calibration.residuals.wave_options import Options
 from calibration.results.applied_calibration import AppliedCalibration
 from calibration.results.calibration_file import ChannelError, TestErrors
 from calibration.results.comparison_file import (
@@ -27,7 +28,7 @@ from calibration.results.comparison_file import (
     UsedCoefficients,
 )
 from calibration.results.result_folder import COMPARISON_FILE, draw, outdated, write_motion
-from calibration.results.write_calibration import common_axis
+from calibration.results.tests_dataset import common_axis
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.hull.outline import hull_variable

@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from calibration.discovery.diagnosis import Diagnosis, Effect, Finding, LatentForce, Prediction, Rejected, Score
+from calibration.discovery.diagnosis import Diagnosis, Finding, Prediction, Rejected, Score
 from calibration.discovery.refusal import RefusalKind
+from calibration.discovery.reported_effects import Effect
+from calibration.discovery.reported_forces import LatentForce
 from calibration.result import BandError, Calibration, Series, TestFit
 from calibration.results import write_calibration as outputs
 from calibration.results.diagnosis_file import (
@@ -33,7 +35,7 @@ from calibration.results.diagnosis_file import (
 )
 from calibration.results.refusal_sentences import describe_refusal
 from calibration.results.result_folder import DIAGNOSIS_FILE, draw, outdated, write_motion
-from calibration.results.write_calibration import dataset
+from calibration.results.tests_dataset import dataset
 from jaxhydro.files import staged
 from jaxhydro.result_model import finite_or_null, stated
 from jaxhydro.units import for_people, unit_of

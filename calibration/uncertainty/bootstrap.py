@@ -74,9 +74,24 @@ class Bootstrap:
     def interval(
         self, label: str, level: float = DEFAULT_LEVEL, kind: Literal["percentile", "basic", "normal"] = "percentile"
     ) -> tuple[float, float]:
-        """Interval in values: quantiles of the draws, or these mirrored at the estimate in the coordinate, which takes a bias
-        off, or the estimate and the draws' deviation, for which 50 draws are enough (Davison and Hinkley 1997, chapter 5).
-        Raises InputError for an unknown label, UnknownName for another kind."""
+        """Confidence interval of a parameter, in its own unit.
+
+        Args:
+            label: Label of the parameter.
+            level: Probability of the interval.
+            kind: "percentile": quantiles of the draws. "basic": these mirrored at the estimate, which takes a bias off.
+                "normal": the estimate and the draws' standard deviation, for which 50 draws are enough.
+
+        Returns:
+            Lower and upper end.
+
+        Raises:
+            InputError: The label is unknown.
+            UnknownName: The kind is unknown.
+
+        References:
+            Davison and Hinkley 1997, chapter 5.
+        """
         check(kind=(kind, ("percentile", "basic", "normal")))
         i, sides = self.likelihood.index(label), [0.5 - 0.5 * level, 0.5 + 0.5 * level]
         ends = np.quantile(self.coordinate[:, i], sides)
@@ -270,7 +285,7 @@ def _drawn(
     """All draws refitted, CHUNK_SIZE at once."""
     fit = likelihood.fit
     prior = (jnp.asarray(fit.mean), jnp.asarray(fit.ridge))
-    scale, found, unsettled = likelihood.deviation(), [], 0
+    scale, coordinates, unsettled = likelihood.deviation(), [], 0
     for begin in range(0, draws, CHUNK_SIZE):
         series, weights = inputs(slice(begin, min(begin + CHUNK_SIZE, draws)))
         count = len(weights)
@@ -285,11 +300,11 @@ def _drawn(
             change = np.abs(np.asarray(unknowns.shared - before.shared)) / scale
             if (change < MAX_LAST_STEP).all() or not np.isfinite(change).any():
                 break
-        found.append(np.asarray(unknowns.shared)[:count])
+        coordinates.append(np.asarray(unknowns.shared)[:count])
         unsettled += int((~np.asarray((change < MAX_LAST_STEP).all(axis=1))[:count]).sum())
         if progress is not None:
             progress(begin + count, draws)
-    coordinate = np.concatenate(found)
+    coordinate = np.concatenate(coordinates)
     coordinate = coordinate[np.isfinite(coordinate).all(axis=1)]  # a motion that ran away
     forward = [jax.vmap(p.transform.forward) for p in fit.decays.problem.space.free]
     value = np.stack([np.asarray(f(jnp.asarray(x))) for f, x in zip(forward, coordinate.T, strict=True)], axis=1)

@@ -20,8 +20,9 @@ from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.decays import DecayProblem, gather_decays
 from calibration.result import TestFit
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.simulate import free_decay, memory_step
+from jaxhydro.dynamics.simulate import free_decay
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
+from jaxhydro.dynamics.time_steps import memory_step
 from jaxhydro.environment import DOFS
 
 

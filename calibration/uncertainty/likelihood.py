@@ -75,30 +75,61 @@ class Likelihood:
         return self.information + np.diag(self.prior[0])
 
     def index(self, label: str) -> int:
-        """Index of a parameter among the free parameters. Raises InputError, which lists them."""
+        """Index of a parameter among the free parameters.
+
+        Args:
+            label: Label of the parameter.
+
+        Raises:
+            InputError: There is no such parameter; the message lists them.
+        """
         if label not in self.labels:
-            known = f"a free parameter of this fit ({', '.join(self.labels)})"
+            expected = f"a free parameter of this fit ({', '.join(self.labels)})"
             hint = self.fit.decays.problem.model.shared_hint(label) or suggest(label, self.labels)
-            raise InputError("uncertainty", [Wrong("parameter", known, repr(label), hint)])
+            raise InputError("uncertainty", [Wrong("parameter", expected, repr(label), hint)])
         return self.labels.index(label)
 
     def free(self, label: str) -> FreeParameter:
-        """How a parameter is transformed."""
+        """Transform and bounds of a free parameter.
+
+        Args:
+            label: Label of the parameter.
+        """
         return self.fit.decays.problem.space.free[self.index(label)]
 
     def value(self, label: str, coordinate: float) -> float:
-        """A parameter's value (its own unit) at a coordinate."""
+        """Value of a parameter (its own unit) at an unbounded coordinate.
+
+        Args:
+            label: Label of the parameter.
+            coordinate: The coordinate.
+        """
         return float(self.free(label).transform.forward(jnp.asarray(coordinate)))
 
     def interval(self, label: str, level: float = DEFAULT_LEVEL, white: bool = False) -> tuple[float, float]:
-        """The Laplace interval: x +- z sd in the coordinate, mapped to values, and so never outside the bounds."""
+        """Laplace interval of a parameter, in its own unit.
+
+        It is x +- z sd in the unbounded coordinate, mapped to values, and so never outside the bounds.
+
+        Args:
+            label: Label of the parameter.
+            level: Probability of the interval.
+            white: Whether every sample is taken as independent.
+
+        Returns:
+            Lower and upper end.
+        """
         i, z = self.index(label), float(norm.ppf(0.5 + 0.5 * level))
         reach = z * self.deviation(white)[i]
         low, high = sorted(self.value(label, self.estimate[i] + sign * reach) for sign in (-1, 1))
         return low, high
 
     def deviation(self, white: bool = False) -> np.ndarray:
-        """Standard deviations (p,) of the shared coordinates."""
+        """Standard deviations of the shared coordinates, (p,).
+
+        Args:
+            white: Whether every sample is taken as independent.
+        """
         return np.sqrt(np.diag(self.white if white else self.covariance)[: len(self.labels)])
 
     def excess(self) -> dict[str, float]:
@@ -107,11 +138,18 @@ class Likelihood:
         return {label: float(x) for label, x in zip(self.labels, ratio, strict=True)}
 
     def stretch(self, label: str) -> tuple[float, np.ndarray]:
-        """nu, by which a drop of Q in this parameter is too large to be a chi-square of one degree of freedom, and how all
-        unknowns move (n,) with a unit step of it.
+        """Correction of a parameter's likelihood drop for coloured errors, and the direction of its profile.
+
+        A drop of Q over nu is a chi-square of one degree of freedom.
 
         nu = d^T S d / d^T H d along d = H^-1 e_i, which is [H^-1 S H^-1]_ii / [H^-1]_ii: Kent 1982 (Biometrika 69, 19-27,
         section 3) with one parameter of interest. Its own prior is left out where the manifest states none.
+
+        Args:
+            label: Label of the parameter.
+
+        Returns:
+            nu (-), and how all unknowns move with a unit step of the parameter, (n,).
         """
         i = self.index(label)
         move = pseudo_inverse(self.hessian, WEAK_PRIOR_ROUNDING)[:, i]
@@ -139,15 +177,22 @@ def coordinates(unknowns: Unknowns) -> np.ndarray:
 def restored_fit(
     campaign: Campaign, began: Mapping[str, Any], ended: Mapping[str, float], report: Callable[..., None] = lambda *_: None
 ) -> Fit:
-    """The fit that a calibration to decays was, with its free parameters and priors, where it `ended`; the records' releases
-    and offsets, which a calibration does not keep, begin from the records. `began` are values, of free parameters and others,
-    that it began from in place of the platform's; `report` is that of `prepare`."""
+    """Fit of a finished calibration to decays, with its free parameters and priors.
+
+    Releases and offsets, which a calibration does not keep, begin from the records.
+
+    Args:
+        campaign: The campaign.
+        began: Values, of free parameters and others, that the calibration began from in place of the platform's.
+        ended: Calibrated values by label.
+        report: As in `prepare_fit`.
+    """
     declared = campaign.model.values
     # only what is not as declared, so that types stay, and what was compiled for the fit serves again
     start = {k: float(v) for k, v in began.items() if float(v) != float(declared[k])}
     fit = prepare_fit(campaign, free=list(ended), start=start, report=report)
-    there = [p.transform.inverse(float(ended[p.label])) for p in fit.decays.problem.space.free]
-    fit.unknowns = fit.unknowns._replace(shared=jnp.array(there))
+    coordinates = [p.transform.inverse(float(ended[p.label])) for p in fit.decays.problem.space.free]
+    fit.unknowns = fit.unknowns._replace(shared=jnp.array(coordinates))
     return fit
 
 

@@ -59,7 +59,18 @@ class Samples:
         return np.asarray(self.coordinate.reshape(-1, len(self.labels)).std(axis=0, ddof=1))
 
     def interval(self, label: str, level: float = DEFAULT_LEVEL) -> tuple[float, float]:
-        """Equal-tailed interval in values. Raises InputError for an unknown label."""
+        """Equal-tailed credible interval of a parameter, in its own unit.
+
+        Args:
+            label: Label of the parameter.
+            level: Probability of the interval.
+
+        Returns:
+            Lower and upper end.
+
+        Raises:
+            InputError: The label is unknown.
+        """
         mine = self.value[..., self.likelihood.index(label)].ravel()
         low, high = np.quantile(mine, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
         return float(low), float(high)

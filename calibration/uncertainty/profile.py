@@ -58,7 +58,11 @@ class Profile:
         return self.lower, self.upper
 
     def holds(self, value: float) -> bool:
-        """Whether a value is in the interval."""
+        """Whether a value is in the interval.
+
+        Args:
+            value: The value, in the parameter's unit.
+        """
         return (self.lower is None or value >= self.lower) and (self.upper is None or value <= self.upper)
 
     def __str__(self) -> str:

@@ -1,18 +1,8 @@
 """Spectra, energy in bands, transfer functions and statistics of records."""
 
-from jaxhydro.analysis.spectral import (
-    Exceedance,
-    PowerSpectrum,
-    Statistics,
-    TransferFunction,
-    band_integral,
-    band_pass,
-    bands,
-    exceedance,
-    power_spectrum,
-    statistics,
-    transfer_function,
-)
+from jaxhydro.analysis.record_statistics import Exceedance, Statistics, exceedance, statistics
+from jaxhydro.analysis.spectral import PowerSpectrum, band_integral, band_pass, bands, power_spectrum
+from jaxhydro.analysis.transfer_functions import TransferFunction, transfer_function
 
 __all__ = [
     "Exceedance",

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum, statistics
+from jaxhydro.analysis.record_statistics import statistics
+from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum
 from jaxhydro.environment import DOFS
 from jaxhydro.units import unit_of
 from jaxhydro.waves.sea_state import peak_period
@@ -39,8 +40,8 @@ def bands_of(channel: str, peak_period: float | None) -> dict[str, tuple[float, 
     """
     if channel not in ("wave", *DOFS) or channel == "yaw":
         return {}
-    found = bands("surge" if channel == "wave" else channel, peak_period or 1.0)
-    return {"wave_frequency": found["wave_frequency"]} if channel == "wave" else found
+    limits = bands("surge" if channel == "wave" else channel, peak_period or 1.0)
+    return {"wave_frequency": limits["wave_frequency"]} if channel == "wave" else limits
 
 
 def record_peak_period(elevation: np.ndarray, step: float, low: float = 0.0, cutoff: float = math.inf) -> float:
@@ -86,24 +87,24 @@ def still(values: np.ndarray) -> np.ndarray:
 
 
 def _statistics(time: np.ndarray, channel: str, values: np.ndarray) -> dict[str, Any]:
-    found = statistics(time, still(values))._asdict()
-    return {"unit": unit_of(channel), **{key: value if math.isfinite(value) else None for key, value in found.items()}}
+    numbers = statistics(time, still(values))._asdict()
+    return {"unit": unit_of(channel), **{key: value if math.isfinite(value) else None for key, value in numbers.items()}}
 
 
 def _bands(time: np.ndarray, channel: str, values: np.ndarray, peak_period: float | None) -> dict[str, Any]:
-    spectrum, found = power_spectrum(time, still(values)), {}
+    spectrum, energies = power_spectrum(time, still(values)), {}
     for name, (low, high) in bands_of(channel, peak_period).items():
         area = band_integral(spectrum, low, high)
-        found[name] = {"band": [low, high], "integral": area, "standard_deviation": math.sqrt(area)}
-    return found
+        energies[name] = {"band": [low, high], "integral": area, "standard_deviation": math.sqrt(area)}
+    return energies
 
 
 def tables(document: Mapping[str, Any]) -> tuple[tuple[tuple[str, ...], list[tuple[str, ...]]], ...]:
     """Headings and rows of the two printed tables: statistics, and band energies of every moving channel."""
     rows, energy = [], []
-    for channel, found in document["statistics"].items():
-        rows.append((f"{channel} ({found['unit']})", *(_number(found[name]) for name in PRINTED_STATISTICS)))
-        deviation = found["standard_deviation"]
+    for channel, numbers in document["statistics"].items():
+        rows.append((f"{channel} ({numbers['unit']})", *(_number(numbers[name]) for name in PRINTED_STATISTICS)))
+        deviation = numbers["standard_deviation"]
         if not deviation or channel not in document["bands"]:
             continue
         cells = []
@@ -111,7 +112,7 @@ def tables(document: Mapping[str, Any]) -> tuple[tuple[tuple[str, ...], list[tup
             one = document["bands"][channel].get(name)
             share = one and one["integral"] / deviation**2
             cells += [_band(one["band"]), _number(one["integral"]), f"{share:.0%}"] if one else ["-", "-", "-"]
-        energy.append((f"{channel} ({found['unit']}²)", *cells))
+        energy.append((f"{channel} ({numbers['unit']}²)", *cells))
     of_bands = ("Low frequency (Hz)", "Integral", "of all", "Wave frequency (Hz)", "Integral", "of all")
     return (("Channel", *PRINTED_HEADINGS), rows), (("Channel", *of_bands), energy)
 

@@ -1,4 +1,4 @@
-"""Spectra, band energies, transfer functions, statistics and exceedance of evenly sampled records.
+"""Spectra and band energies of evenly sampled records.
 
 All functions are pure and take and return NumPy arrays. They raise ValueError for uneven times: a gap, or jitter above 1 % of
 a step.
@@ -14,7 +14,6 @@ from jaxhydro.environment import DOFS
 from jaxhydro.waves.irregular import sampling_interval
 
 SEGMENT = 1000.0  # s: 0.001 Hz between frequencies, so that the lowest band, 0.005 to 0.025 Hz, has twenty of them
-MIN_TRANSFER_SEGMENTS = 8  # segments' lengths in a record for a transfer function: its coherence is biased by about 1 / number
 
 BANDS = {  # Hz, low and high
     "surge": (0.005, 0.025),
@@ -74,8 +73,8 @@ def power_spectrum(
     References:
         Welch (1967).
     """
-    step, x = _record(time, x)
-    count, shared, window = _segments(len(x), step, segment, overlap, window)
+    step, x = checked_record(time, x)
+    count, shared, window = segment_samples(len(x), step, segment, overlap, window)
     frequency, density = scipy.signal.welch(x, 1 / step, window, count, shared, detrend="constant")
     weight = scipy.signal.get_window(window, count)
     resolution = float(np.sum(weight**2) / (np.sum(weight) ** 2 * step))
@@ -125,7 +124,7 @@ def band_pass(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"], low: fl
         ValueError: The times are uneven, values are not finite, or not 0 <= low < high.
     """
     _in_order(low, high)
-    step, x = _record(time, x)
+    step, x = checked_record(time, x)
     lines, frequency = np.fft.rfft(x), np.fft.rfftfreq(len(x), step)
     lines[(frequency < low) | (frequency > high)] = 0
     return np.fft.irfft(lines, len(x))
@@ -184,7 +183,7 @@ def band_weights(
         ValueError: Unless 0 <= low < high, or where `segment` or `overlap` is out of range.
     """
     _in_order(low, high)
-    size, shared, name = _segments(count, step, segment, overlap, window)
+    size, shared, name = segment_samples(count, step, segment, overlap, window)
     taper = scipy.signal.get_window(name, size)
     f = np.fft.rfftfreq(size, step)
     edges = np.concatenate([f[:1], 0.5 * (f[1:] + f[:-1]), f[-1:]])
@@ -221,176 +220,21 @@ def bands(dof: str, peak_period: float) -> dict[str, tuple[float, float]]:
     return {"low_frequency": BANDS[same], "wave_frequency": BANDS["wave, long" if peak_period >= LONG_PEAK_PERIOD else "wave"]}
 
 
-class TransferFunction(NamedTuple):
-    """Motion per unit of wave (RAO) over frequency.
-
-    motion = Re sum H a exp(i omega t), with H = amplitude exp(i phase) and a the complex amplitudes of the wave.
-
-    Attributes:
-        frequency: Frequencies (Hz), (f,).
-        amplitude: |H| (unit of the motion per unit of the wave), (f,).
-        phase: Phase of H (rad, -pi to pi), (f,); above 0 the motion leads the wave.
-        coherence: Fraction (0 to 1) of the motion's energy that is linear in the wave, (f,). Where it is low, H is noise.
-    """
-
-    frequency: Float[np.ndarray, " f"]  # Hz
-    amplitude: Float[np.ndarray, " f"]  # unit of motion per unit of wave
-    phase: Float[np.ndarray, " f"]  # rad, -pi to pi
-    coherence: Float[np.ndarray, " f"]
-
-
-def transfer_function(
-    time: Float[np.ndarray, " t"],
-    wave: Float[np.ndarray, " t"],
-    motion: Float[np.ndarray, " t"],
-    segment: float | None = None,
-    overlap: float = 0.5,
-    window: str = "hann",
-) -> TransferFunction:
-    """Transfer function (RAO) from wave to motion by cross-spectra.
-
-    The estimate is H1 = S_wave,motion / S_wave,wave, in which noise on the motion averages out. Segments must be long
-    against the decay time of the motion; otherwise resonances come out too low and too wide. Frequencies without wave energy
-    give NaN.
-
-    Args:
-        time: Sample times (s), (t,), even.
-        wave: Wave elevation (m), (t,).
-        motion: Motion (unit), (t,).
-        segment: Length of a segment (s). None: 1000 s, or an eighth of a record shorter than 8000 s.
-        overlap: As in `power_spectrum`.
-        window: As in `power_spectrum`.
-
-    Returns:
-        Amplitude, phase and coherence over frequency.
-
-    Raises:
-        ValueError: As `power_spectrum`, and for fewer than two segments, whose coherence would always be 1.
-
-    References:
-        Bendat and Piersol (2010), Random Data, chapter 6.
-    """
-    step, wave = _record(time, wave)
-    _, motion = _record(time, motion)
-    segment = min(SEGMENT, len(wave) * step / MIN_TRANSFER_SEGMENTS) if segment is None else segment
-    count, shared, window = _segments(len(wave), step, segment, overlap, window)
-    if len(wave) < 2 * count - int(overlap * count):  # of two that share more, the coherence is near 1 whatever they are
-        raise ValueError(f"two segments or more expected, found a record of {len(wave) * step:g} s, segments of {segment:g} s")
-    options = {"fs": 1 / step, "window": window, "nperseg": count, "noverlap": shared, "detrend": "constant"}
-    frequency, across = scipy.signal.csd(wave, motion, **options)
-    of_wave, of_motion = (scipy.signal.welch(x, **options)[1] for x in (wave, motion))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(of_wave > 0, across / of_wave, np.nan)
-        coherence = np.where(of_wave * of_motion > 0, np.abs(across) ** 2 / (of_wave * of_motion), np.nan)
-    return TransferFunction(frequency, np.abs(ratio), np.angle(ratio), coherence)
-
-
-class Statistics(NamedTuple):
-    """Statistics of a record.
-
-    Attributes:
-        mean: Mean (unit).
-        standard_deviation: Standard deviation (unit).
-        minimum: Smallest value (unit).
-        maximum: Largest value (unit).
-        skewness: Third standardised moment (-); 0 for a Gaussian process.
-        kurtosis: Fourth standardised moment (-); 3 for a Gaussian process.
-        zero_crossing_period: Mean time (s) between upward crossings of the mean; NaN with fewer than two.
-        significant_double_amplitude: Mean of the highest third of the ranges between these crossings (unit); NaN as above.
-    """
-
-    mean: float
-    standard_deviation: float
-    minimum: float
-    maximum: float
-    skewness: float
-    kurtosis: float
-    zero_crossing_period: float
-    significant_double_amplitude: float
-
-
-def statistics(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"]) -> Statistics:
-    """Moments, extremes and zero-crossing statistics of a record.
-
-    Noise adds crossings of its own: filter it out first.
-
-    Args:
-        time: Sample times (s), (t,), even.
-        x: Record (unit), (t,).
-
-    Returns:
-        Statistics in the unit of the record; skewness, kurtosis and zero-crossing statistics are NaN where undefined.
-
-    Raises:
-        ValueError: The times are uneven, or values are not finite.
-    """
-    _, x = _record(time, x)
-    centred = x - x.mean()
-    deviation = float(centred.std())
-    scaled = centred / deviation if deviation > 0 else np.full(len(x), np.nan)
-    crossing, cycles = _cycles(np.asarray(time, float), centred)
-    ranges = np.sort([float(np.ptp(cycle)) for cycle in cycles])[::-1]
-    highest = ranges[: max(round(len(ranges) / 3), 1)]
-    return Statistics(
-        float(x.mean()),
-        deviation,
-        float(x.min()),
-        float(x.max()),
-        float(np.mean(scaled**3)),
-        float(np.mean(scaled**4)),
-        float((crossing[-1] - crossing[0]) / len(cycles)) if cycles else float("nan"),
-        float(highest.mean()) if cycles else float("nan"),
-    )
-
-
-class Exceedance(NamedTuple):
-    """Peaks of a record and how often they are exceeded.
-
-    Attributes:
-        amplitude: Peaks above the mean (unit), ascending, (n,).
-        probability: Fraction of peaks above each, (n,).
-        rayleigh: The same for a narrow-band Gaussian process of the record's standard deviation, (n,).
-    """
-
-    amplitude: Float[np.ndarray, " n"]
-    probability: Float[np.ndarray, " n"]
-    rayleigh: Float[np.ndarray, " n"]
-
-
-def exceedance(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"]) -> Exceedance:
-    """Exceedance probability of the peaks of a record.
-
-    A peak is the highest value above the mean between two upward crossings of the mean. For troughs, give -x. The i-th
-    highest of n peaks is exceeded with probability i / (n + 1) (Weibull's plotting position).
-
-    Args:
-        time: Sample times (s), (t,), even.
-        x: Record (unit), (t,).
-
-    Returns:
-        Peaks and probabilities; empty with fewer than two crossings.
-
-    Raises:
-        ValueError: The times are uneven, or values are not finite.
-
-    References:
-        Longuet-Higgins (1952): Rayleigh distribution exp(-a² / (2 s²)), s the standard deviation.
-    """
-    _, x = _record(time, x)
-    centred = x - x.mean()
-    _, cycles = _cycles(np.asarray(time, float), centred)
-    peaks = np.sort([float(cycle.max()) for cycle in cycles])
-    probability = np.arange(len(peaks), 0, -1) / (len(peaks) + 1)
-    return Exceedance(peaks, probability, np.exp(-0.5 * peaks**2 / max(centred.var(), 1e-300)))
-
-
 def _in_order(low: float, high: float) -> None:
     if not 0 <= low < high:
         raise ValueError(f"a band has 0 <= low < high, found {low} and {high} Hz")
 
 
-def _record(time: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
-    """Sampling interval (s) and checked values of a record."""
+def checked_record(time: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
+    """Sampling interval (s) and checked values of a record.
+
+    Args:
+        time: Sample times (s), (t,), even.
+        x: Record (unit), (t,).
+
+    Raises:
+        ValueError: The times are uneven, or values are not finite.
+    """
     step, x = sampling_interval(time), np.asarray(x, float)
     if x.shape != np.shape(time):
         raise ValueError(f"a value for each of {len(time)} times expected, found shape {x.shape}")
@@ -399,11 +243,21 @@ def _record(time: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
     return step, x
 
 
-def _segments(count: int, step: float, segment: float | None, overlap: float, window: str) -> tuple[int, int, str]:
+def segment_samples(count: int, step: float, segment: float | None, overlap: float, window: str) -> tuple[int, int, str]:
     """Samples per segment, samples shared with the next, and window.
 
     The segments reach the end of the record, but for fewer samples than there are segments. The window is "boxcar" where one
     segment is the whole record.
+
+    Args:
+        count: Number of samples of the record.
+        step: Sampling interval (s).
+        segment: As in `power_spectrum`.
+        overlap: As in `power_spectrum`.
+        window: As in `power_spectrum`.
+
+    Raises:
+        ValueError: `segment` or `overlap` is out of range.
     """
     length = SEGMENT if segment is None else segment
     if not (length >= 4 * step and 0 <= overlap < 1):
@@ -414,11 +268,3 @@ def _segments(count: int, step: float, segment: float | None, overlap: float, wi
     between = samples - min(int(overlap * samples), samples - 1)  # the starts of two segments, at most
     further = -(-(count - samples) // between)
     return samples, samples - (count - samples) // further if further else 0, window
-
-
-def _cycles(time: np.ndarray, centred: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Times of the upward zero crossings (linear interpolation), and the samples between them."""
-    before = np.flatnonzero((centred[:-1] < 0) & (centred[1:] >= 0))
-    share = centred[before] / (centred[before] - centred[before + 1])
-    crossing = time[before] + share * (time[before + 1] - time[before])
-    return crossing, np.split(centred, before + 1)[1:-1]

@@ -44,8 +44,7 @@ def system(text: str) -> WaveSystem:
     for key in ("hs", "tp"):
         if key not in found:
             raise wrong("--sea", f"{key} expected, as {EXAMPLE}; found {text!r}")
-        if not found[key] > 0:
-            raise wrong("--sea", f"{key}: a number > 0 expected, found {found[key]:g}")
+        positive(found[key], "--sea", f"{key}: ")
     if "gamma" in found and found.get("spectrum", SHAPES[0]) != SHAPES[0]:
         raise wrong("--sea", f"gamma: a JONSWAP spectrum expected with it, found {found['spectrum']}")
     if "gamma" in found and not 1 <= found["gamma"] <= MAX_ENHANCEMENT:

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jaxhydro.cli.arguments import DeckFormat
 from jaxhydro.cli.console import say
 from jaxhydro.cli.convert_command import copy_whole, print_losses
+from jaxhydro.cli.option_choices import DeckFormat
 from jaxhydro.dynamics.model import Model
 from jaxhydro.files import check_new_folder, staged
 from jaxhydro.interop.export_source import ExportedModel, ExportSource, PotentialTable

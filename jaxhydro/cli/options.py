@@ -19,10 +19,19 @@ def wrong(option: str, message: str) -> typer.BadParameter:
     return typer.BadParameter(message, param_hint=option)
 
 
-def positive(value: float, option: str) -> float:
-    """A finite number > 0."""
+def positive(value: float, option: str, key: str = "") -> float:
+    """A finite number > 0.
+
+    Args:
+        value: The number.
+        option: The option.
+        key: Words before the message, such as `hs: `.
+
+    Raises:
+        BadParameter: It is none.
+    """
     if not (math.isfinite(value) and value > 0):
-        raise wrong(option, f"a number > 0 expected, found {value:g}")
+        raise wrong(option, f"{key}a number > 0 expected, found {value:g}")
     return value
 
 

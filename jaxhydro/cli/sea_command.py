@@ -13,11 +13,12 @@ from jaxhydro.cli.sea_options import transient_of, with_band
 from jaxhydro.cli.simulate_command import Job, finite, print_remarks, print_rest, told_of_bed
 from jaxhydro.cli.simulation_files import Motion, SeaState, write_motion
 from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.natural_modes import Modes
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, TRANSIENT, TRANSIENT_SHARE, RequestedSea
 from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.sea_of_request import build_sea, impossible, outside
-from jaxhydro.dynamics.simulate import free_decay, largest_step
-from jaxhydro.dynamics.statics import Modes
+from jaxhydro.dynamics.simulate import free_decay
+from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark
 from jaxhydro.units import rounded_up

@@ -11,14 +11,16 @@ import numpy as np
 from jaxtyping import Array, Float
 
 import jaxhydro
-from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
+from jaxhydro.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.cli.console import complain, say, table
 from jaxhydro.cli.simulation_files import Motion, write_motion
 from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.natural_modes import Modes
 from jaxhydro.dynamics.rest_remarks import rest_remarks, wave_remarks
-from jaxhydro.dynamics.simulate import default_step, free_decay
-from jaxhydro.dynamics.statics import Modes, equilibrium, stable_modes
+from jaxhydro.dynamics.simulate import free_decay
+from jaxhydro.dynamics.statics import equilibrium, stable_modes
 from jaxhydro.dynamics.table_ranges import regular_fault
+from jaxhydro.dynamics.time_steps import default_step
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark

@@ -12,8 +12,8 @@ from jaxhydro.units import for_people, unit_of
 
 if TYPE_CHECKING:
     from jaxhydro.dynamics.model import Model
+    from jaxhydro.dynamics.natural_modes import Modes
     from jaxhydro.dynamics.response import Response
-    from jaxhydro.dynamics.statics import Modes
 
 DIGITS = 4  # significant digits of a number in an HTML table
 MAX_ROWS = 60  # of an HTML table

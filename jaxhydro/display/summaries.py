@@ -12,8 +12,8 @@ from jaxhydro.units import for_people, unit_of
 
 if TYPE_CHECKING:
     from jaxhydro.dynamics.model import Model
+    from jaxhydro.dynamics.natural_modes import Modes
     from jaxhydro.dynamics.response import Response
-    from jaxhydro.dynamics.statics import Modes
     from jaxhydro.parameters import AbstractEffect
     from jaxhydro.waves.components import Components
     from jaxhydro.waves.irregular_sea import IrregularSea

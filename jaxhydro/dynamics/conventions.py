@@ -44,7 +44,10 @@ class Conventions:
         check(**{field.name: (getattr(self, field.name), allowed_values(field.name)) for field in fields(self)})
 
     def changed(self, **changes: Any) -> "Conventions":
-        """These conventions with others in place of some.
+        """These conventions with some changed.
+
+        Args:
+            **changes: New values by name.
 
         Raises:
             UnknownName: There is no such convention, or it has no such value.

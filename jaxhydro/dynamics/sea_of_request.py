@@ -8,9 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro.analysis.sea_statistics import record_peak_period
+from jaxhydro.dynamics.irregular_simulation import MAX_PAIRS, too_many_pairs
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.requested_sea import Record, RequestedSea
-from jaxhydro.dynamics.simulate import MAX_PAIRS, too_many_pairs
 from jaxhydro.dynamics.table_ranges import heading_fault, outside_tables
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.remarks import Remark

@@ -2,101 +2,26 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any, NamedTuple, get_args
+from typing import get_args
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.choices import check, unknown
-from jaxhydro.dynamics.integrate import Adjoint, Grid, Method, clock, integrate
+from jaxhydro.dynamics.integrate import Adjoint, Method
+from jaxhydro.dynamics.irregular_simulation import simulate_irregular, simulate_steps
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.response import Response
-from jaxhydro.dynamics.statics import equilibrium, natural_modes
-from jaxhydro.dynamics.table_ranges import check_waves, heading_fault
+from jaxhydro.dynamics.statics import equilibrium
+from jaxhydro.dynamics.table_ranges import check_waves
+from jaxhydro.dynamics.time_steps import default_step, memory_step, sea_step
 from jaxhydro.environment import DOFS
-from jaxhydro.integrators import adams_bashforth
 from jaxhydro.integrators.mixed_precision import Precision
-from jaxhydro.rotations import rotation
-from jaxhydro.waves.irregular import fourier_length
-from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
-from jaxhydro.waves.sea import AbstractSea, StillWater, WaveSea
+from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import state_of
-from jaxhydro.waves.support_sea import SupportSea
-
-MAX_PAIRS = 10_000  # pairs of components of which the second order of a sea of several headings is summed directly
-SEA_STEP = 0.25  # s times the platform's pace, in irregular seas where no step is asked for
-LONGEST_STEP, STEP_AT_REST = 1.0, 0.5  # the same elsewhere: the longest, and that of a platform which nothing restores
-STEP_MARGIN = 1.001  # of a step: hulls of nearly one size take the same
-STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for
-STEP_PER_WAVE_PERIOD = 0.075  # of the shortest waves' period: the longest step
-STABILITY_LIMIT = {"ab4": 0.3}  # step times the fastest rate of a memory: Adams-Bashforth is stable to there (on the real axis)
-DEFAULT_STABILITY_LIMIT = 1.0  # by Runge-Kutta schemes, stable to 2.8: for accuracy
-
-
-def default_step(model: Model, method: Method = "tsit5") -> float:
-    """Default time step (s) outside irregular seas.
-
-    It is a 24th of the shortest natural period, at most 1 s times `Model.pace`, and short enough for `memory_step`. The
-    error of a decay is then about 1e-6 of its amplitude. Waves shorter than the platform's motions need a smaller step.
-    """
-    periods = natural_modes(model).period
-    pace = float(model.pace)
-    step = min(LONGEST_STEP * pace, float(periods.min()) / STEPS_PER_PERIOD) if len(periods) else STEP_AT_REST * pace
-    return min(step, memory_step(model, method))
-
-
-def memory_step(model: Model, method: Method = "tsit5") -> float:
-    """Longest time step (s) that resolves the loads' memories; infinite where none is fast.
-
-    Args:
-        model: The platform.
-        method: Integration scheme.
-
-    Raises:
-        UnknownName: Another method.
-    """
-    check(method=(method, get_args(Method)))
-    fastest = max(load.fastest() for load in model.loads)
-    return STABILITY_LIMIT.get(method, DEFAULT_STABILITY_LIMIT) / fastest if fastest else math.inf
-
-
-def sea_step(model: Model) -> float:
-    """Default time step (s) in irregular seas: 0.25 s at the size of VolturnUS-S."""
-    return STEP_MARGIN * SEA_STEP * float(model.pace)
-
-
-def excursion_of(model: Model) -> float:
-    """Drift (m) along the waves beyond which a sea is prepared anew: 20 m at the size of VolturnUS-S."""
-    return EXCURSION * float(model.size)
-
-
-def largest_step(model: Model, cutoff: float) -> float:
-    """Largest time step (s) in an irregular sea that resolves the platform's motions and the waves.
-
-    Args:
-        model: The platform.
-        cutoff: Highest frequency of the waves (Hz).
-    """
-    return min(sea_step(model), default_step(model, "ab4"), STEP_PER_WAVE_PERIOD / cutoff)
-
-
-@eqx.filter_jit
-def _simulate(
-    model: Model,
-    sea: AbstractSea,
-    start: State,
-    times: Float[Array, " t"],
-    step: Float[Array, ""],
-    steps: int,
-    method: Method,
-    adjoint: Adjoint,
-    precision: Precision = "double",
-) -> tuple[Response, Grid]:
-    grid = integrate(model, sea, start, times[0], step, steps, method, adjoint, precision=precision)
-    return Response(times, *grid.at(times)), grid
 
 
 def simulate(
@@ -166,137 +91,13 @@ def simulate(
         return simulate_irregular(here, sea, start, times, step, method, adjoint, precision=precision).response
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / step - 1e-9))
-    return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint, precision)[0]
+    return simulate_steps(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint, precision)[0]
 
 
 @jax.jit
 def _initial_state(rest: Float[Array, "6"], position: Float[Array, "6"], rate: Float[Array, "6"]) -> tuple[Array, Array]:
     """Initial position, and velocity in body axes."""
     return rest + position, Model.body_velocity(rest + position, rate)
-
-
-def summed_directly(model: Model, sea: IrregularSea) -> WaveSea:
-    """A sea of several headings by direct summation, for the tables of a model.
-
-    Raises:
-        ValueError: A table of the model has not all of its headings, or its second order has too many pairs.
-    """
-    if (fault := heading_fault(model, np.asarray(sea.components.heading))) is not None:
-        raise ValueError(f"expected {fault[0]}, found {fault[1]}")
-    count = sea.components.omega.size
-    if sea.order == 2 and count**2 > MAX_PAIRS:
-        raise ValueError(too_many_pairs(count))
-    return sea.direct()
-
-
-def too_many_pairs(count: int) -> str:
-    """Why a sea of several headings and so many components is not simulated at second order."""
-    most = math.isqrt(MAX_PAIRS)
-    return (
-        f"at second order a sea of several headings is the sum over all pairs of its components: {most} components at most, "
-        f"found {count}. Take order 1, one heading, or a shorter duration"
-    )
-
-
-class IrregularSimulation(NamedTuple):
-    """Simulation in an irregular sea.
-
-    Attributes:
-        response: Motion at the times asked for.
-        grid: Motion at the ends of all steps.
-        sea: The sea as it was prepared; one of several headings by direct summation.
-        step: Time step (s).
-        steps: Number of steps.
-    """
-
-    response: Response
-    grid: Grid
-    sea: SupportSea | WaveSea
-    step: float
-    steps: int
-
-
-def simulate_irregular(
-    model: Model,
-    sea: IrregularSea,
-    start: State,
-    times: Float[Array, " t"],
-    limit: float,
-    method: Method = "ab4",
-    adjoint: Adjoint = "forward",
-    margin: float = 0.0,
-    precision: Precision = "double",
-) -> IrregularSimulation:
-    """Simulate in an irregular sea, prepared anew for a larger box where the platform leaves the first.
-
-    A sea of several headings is summed directly.
-
-    Args:
-        model: The platform, with its coefficients in this sea.
-        sea: The sea.
-        start: Initial state.
-        times: Output times (s), (t,).
-        limit: Largest time step (s); the step taken divides the sea's period.
-        method: Integration scheme.
-        adjoint: As in `simulate`.
-        margin: Distance (m) that the last box has to spare.
-        precision: As in `simulate`.
-
-    Returns:
-        The motion, and the sea and steps that were used.
-
-    Raises:
-        ValueError: The platform is carried away.
-    """
-    begin = float(times[0])
-    if not sea.long_crested:
-        duration = float(times[-1] - times[0])
-        steps = max(adams_bashforth.START_STEPS, math.ceil(duration / limit - 1e-9))
-        met = summed_directly(model, sea)
-        found, grid = _simulate(model, met, start, times, jnp.asarray(duration / steps), steps, method, adjoint, precision)
-        return IrregularSimulation(found, grid, met, duration / steps, steps)
-    step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
-    points, own = model.hull.extremities(), excursion_of(model)
-    excursion = own
-    computed: Any = {"transfer": model.transfer, "exciting": model.excitation}
-    while True:
-        prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, **computed)
-        found, grid = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint, precision)
-        box: Any = model.through(prepared)  # with the box moved where the sea is
-        reached = float(_farthest(found.position, jnp.asarray(points), box))
-        if not reached + margin > prepared.half:
-            return IrregularSimulation(found, grid, prepared, step, steps)
-        if reached > prepared.half + 10 * own:
-            raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
-        excursion += reached + margin - prepared.half + 0.5 * own
-
-
-def steps_in(sea: IrregularSea, duration: float, limit: float) -> tuple[float, int]:
-    """Size (s) and number of time steps that divide the sea's period and cover a duration.
-
-    Args:
-        sea: The sea.
-        duration: Duration (s).
-        limit: Largest time step (s).
-    """
-    period = float(sea.components.period)
-    step = period / fourier_length(period / limit)
-    return step, max(adams_bashforth.START_STEPS, math.ceil(duration / step - 1e-9))
-
-
-def farthest(position: Float[Array, "t 6"], points: Float[Array, "3 p"], sea: SupportSea) -> Float[Array, ""]:
-    """Largest distance (m) of the hull from the middle of the sea's box, along the waves.
-
-    Args:
-        position: Positions (m, rad) over time, (t, 6).
-        points: Extremities of the hull (m), (3, p).
-        sea: The prepared sea.
-    """
-    place = jax.vmap(lambda q: sea.along @ (q[:2, None] + rotation(q[3:])[:2] @ points) - sea.middle)(position)
-    return jnp.abs(place).max()
-
-
-_farthest = eqx.filter_jit(farthest)
 
 
 def free_decay(

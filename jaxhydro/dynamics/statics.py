@@ -1,7 +1,7 @@
-"""Static equilibrium, natural modes and periods."""
+"""Static equilibrium, and the natural modes of a platform about it."""
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import equinox as eqx
 import jax
@@ -11,18 +11,14 @@ from jaxtyping import Array, Float
 
 from jaxhydro.choices import unknown
 from jaxhydro.dynamics.model import Model, State
+from jaxhydro.dynamics.natural_modes import Modes, modes_of
 from jaxhydro.dynamics.newton_euler import body_acceleration
 from jaxhydro.environment import DOFS
-from jaxhydro.quick_jit import on_device, quick_jit
+from jaxhydro.quick_jit import quick_jit
 from jaxhydro.waves.sea import StillWater
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 NEWTON_TOLERANCE = 1e-12  # of the position: the last step
 ITERATIONS = 64
-MODE_ITERATIONS, MODE_TOLERANCE = 30, 1e-10  # of squared frequencies
-SAME_FREQUENCY = 1e-5  # of squared frequencies: modes closer than this are of one frequency
 MIN_COUPLING = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
 MOMENT_ARM = 10.0  # m times the platform's size: lever that turns a moment out of balance into a force
 MAX_HEAVE = 20.0  # the same: heave in which a platform does not float, if it is not less deep
@@ -55,8 +51,8 @@ class _HeldMotion(NamedTuple):
 
 def _unbalanced(position: Float[Array, "6"], model: Model, held: _HeldMotion | None) -> Float[Array, "6"]:
     """Residual of the equilibrium: `_balance`, and for a held motion its distance from where it is held."""
-    found = _balance(position, model)
-    return found if held is None else jnp.where(held.mask > 0, position - held.value, found)
+    residual = _balance(position, model)
+    return residual if held is None else jnp.where(held.mask > 0, position - held.value, residual)
 
 
 @eqx.filter_custom_jvp
@@ -66,8 +62,8 @@ def _root(model: Model, held: _HeldMotion | None) -> tuple[Float[Array, "6"], Fl
     # with the library's implicit derivative cannot be kept compiled
 
     def balance(q: Float[Array, "6"]) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
-        found = _unbalanced(q, model, held)
-        return found, found
+        residual = _unbalanced(q, model, held)
+        return residual, residual
 
     def going(at: tuple[Array, Array, Array, Array]) -> Array:
         root, step, count, _ = at
@@ -75,10 +71,10 @@ def _root(model: Model, held: _HeldMotion | None) -> tuple[Float[Array, "6"], Fl
 
     def newton(at: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
         root, _, count, _ = at
-        slopes, found = jax.jacfwd(balance, has_aux=True)(root)
+        slopes, residual = jax.jacfwd(balance, has_aux=True)(root)
         # the least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is
-        step = jnp.linalg.pinv(slopes, rtol=MIN_RESTORING) @ found
-        return root - step, step, count + 1, found
+        step = jnp.linalg.pinv(slopes, rtol=MIN_RESTORING) @ residual
+        return root - step, step, count + 1, residual
 
     never = jnp.full(6, jnp.inf)
     root, _, _, unbalanced = jax.lax.while_loop(going, newton, (jnp.zeros(6), never, jnp.asarray(0), never))
@@ -145,72 +141,6 @@ def held_at(model: Model, dof: int, value: Float[Array, ""]) -> Float[Array, "6"
     return _root(model, _HeldMotion(jnp.zeros(6).at[dof].set(1.0), jnp.asarray(value, float)))[0]
 
 
-class Modes(NamedTuple):
-    """Undamped natural modes of small motion.
-
-    Attributes:
-        period: Natural periods (s), longest first, (m,).
-        shape: Mode shapes, (mode, dof); the largest entry is 1.
-        unstable: Degrees of freedom in which the platform falls away from rest.
-        motion: Degree of freedom with the largest strain energy in each mode.
-    """
-
-    period: np.ndarray
-    shape: np.ndarray
-    unstable: tuple[str, ...]
-    motion: tuple[str, ...]
-
-    def number(self, dof: str) -> int | None:
-        """Index of the longest mode in which `dof` has the largest strain energy, or None."""
-        return self.motion.index(dof) if dof in self.motion else None
-
-    def of(self, dof: str) -> float:
-        """Longest period (s) of a mode in which `dof` has the largest strain energy, or NaN.
-
-        Raises:
-            UnknownName: The name is not a degree of freedom.
-        """
-        if dof not in DOFS:
-            raise unknown("degree of freedom", dof, DOFS)
-        at = self.number(dof)
-        return float("nan") if at is None else float(self.period[at])
-
-    def __repr__(self) -> str:
-        """Natural periods by motion."""
-        from jaxhydro.display.summaries import modes_summary
-
-        return modes_summary(self)
-
-    def _repr_html_(self) -> str:
-        from jaxhydro.display.data_frames import modes_html
-
-        return modes_html(self)
-
-    def to_dataframe(self) -> "pd.DataFrame":
-        """Natural periods and mode shapes.
-
-        Returns:
-            One row for each mode: `motion`, `period_s`, and its shape in `surge` ... `yaw`, the largest entry 1.
-        """
-        from jaxhydro.display.data_frames import modes_frame
-
-        return modes_frame(self)
-
-
-def strain_energy(stiffness: Float[Array, "6 6"], vectors: Float[Array, "6 m"]) -> Float[Array, "6 m"]:
-    """Fraction of each degree of freedom in the potential energy of modes, (6, m).
-
-    It does not depend on units, and hardly on the height of the reference point. A spar that pitches about a point far below
-    still water moves the reference point by more than its angle, but only the angle is restored.
-
-    Args:
-        stiffness: Stiffness matrix, (6, 6).
-        vectors: Mode shapes, (6, m).
-    """
-    energy = abs(vectors * (stiffness @ vectors))
-    return energy / energy.sum(axis=0)
-
-
 @quick_jit
 def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, "6 6"], Float[Array, "6 6"]]:
     """Mass matrix with added mass, and stiffness matrix, of small motion about a position of rest.
@@ -260,91 +190,9 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
         EquilibriumError: The platform has no static equilibrium.
     """
     position = equilibrium(model) if position is None else position
-    mass, stiffness = (np.asarray(m) for m in linearised(model, position))
-    square, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
-    order = np.argsort(square.real)
-    square, vectors = square.real[order], vectors.real[:, order]
-    largest = np.abs(square).max()
-    _with_memories(model, mass, stiffness, square, vectors)
-    kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
-    vectors[:, kept] = _one_motion_each(square[kept], vectors[:, kept], widths(model))
-    share = strain_energy(on_device(stiffness), on_device(vectors[:, kept]))
-    motion = tuple(DOFS[int(i)] for i in np.argmax(np.asarray(share), axis=0))
-    vectors = vectors * widths(model)[:, None]
-    shape = vectors[:, kept].T
-    shape = shape / np.abs(shape).max(axis=1, keepdims=True)
-    unstable = sorted({int(np.argmax(np.abs(vector))) for vector in vectors[:, falls].T})
-    return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable), motion)
-
-
-def _with_memories(
-    model: Model,
-    mass: Float[np.ndarray, "6 6"],
-    stiffness: Float[np.ndarray, "6 6"],
-    square: Float[np.ndarray, " m"],
-    vectors: Float[np.ndarray, "6 m"],
-) -> None:
-    """Change each mode to that with the added mass of its own frequency; nothing where no load has a linear memory.
-
-    A(omega) - A(infinity) is the imaginary part of the memory's frequency response over omega (Ogilvie 1964; see
-    `ComputedRadiation`).
-
-    Args:
-        model: The platform.
-        mass: Mass with the added mass of infinite frequency.
-        stiffness: Stiffness.
-        square: Squared frequencies, in order; those of modes are changed.
-        vectors: Mode shapes; those of modes are changed.
-    """
-    memories = [load for load in model.loads if load.retardation(1.0) is not None]
-    if not memories:
-        return
-    scale = widths(model)
-    for i in np.flatnonzero(square > 1e-10 * np.abs(square).max()):
-        for _ in range(MODE_ITERATIONS):
-            omega = float(np.sqrt(square[i]))
-            response = sum(np.asarray(load.retardation(omega)) for load in memories)
-            found, shapes = np.linalg.eig(np.linalg.solve(mass + response.imag / omega, stiffness))
-            old, new = (scale[:, None] * one / np.linalg.norm(scale[:, None] * one, axis=0) for one in (vectors, shapes.real))
-            alike = np.abs(old.T @ new)
-            # of two modes with nearly one frequency, such as roll and pitch, each takes the shape that the other is less like
-            own = alike.argmax(axis=0) == i
-            same = int(np.argmax(np.where(own, alike[i], 0.0) if own.any() else alike[i]))
-            change = abs(found[same].real - square[i])
-            square[i], vectors[:, i] = found[same].real, shapes[:, same].real
-            if square[i] <= 0 or change < MODE_TOLERANCE * square[i]:
-                break
-    order = np.argsort(square)
-    square[:], vectors[:] = square[order], vectors[:, order]
-
-
-def _one_motion_each(
-    square: Float[np.ndarray, " m"], vectors: Float[np.ndarray, "6 m"], scale: Float[np.ndarray, "6"]
-) -> Float[np.ndarray, "6 m"]:
-    """Mode shapes in which modes of one frequency are about one motion each.
-
-    Any mixture of such modes is a mode, such as surge and sway of a symmetric hull.
-
-    Args:
-        square: Squared frequencies, in order.
-        vectors: Mode shapes.
-        scale: Factors by which displacements and rotations are compared.
-    """
-    found = np.array(vectors)
-    begin = 0
-    for end in range(1, len(square) + 1):
-        if end < len(square) and square[end] - square[begin] < SAME_FREQUENCY * square[end]:
-            continue
-        if end - begin > 1:
-            alike = found[:, begin:end]
-            rest, motions = alike * scale[:, None], []
-            for _ in range(end - begin):  # the motion that is largest in what others do not move
-                motions.append(int(np.argmax((rest**2).sum(axis=1))))
-                along = rest[motions[-1]] / np.linalg.norm(rest[motions[-1]])
-                rest = rest - np.outer(rest @ along, along)
-            found[:, begin:end] = alike @ np.linalg.inv(alike[sorted(motions)])
-        begin = end
-    return found
+    mass, stiffness = (np.asarray(matrix) for matrix in linearised(model, position))
+    memories = tuple(load for load in model.loads if load.retardation(1.0) is not None)
+    return modes_of(mass, stiffness, memories, widths(model))
 
 
 def _coupled(model: Model, moved: Collection[str]) -> set[str]:

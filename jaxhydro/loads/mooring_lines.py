@@ -1,18 +1,16 @@
 """Mooring lines as straight springs that may go slack."""
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.instant import Instant
+from jaxhydro.loads.abstract_lines import AbstractLines
 from jaxhydro.parameters import Parameter, parameters
-from jaxhydro.rotations import cross
 
 
-class MooringLines(AbstractLoad):
+class MooringLines(AbstractLines):
     """Massless elastic mooring lines from fairlead to anchor.
 
     T = k max(0, l - l0) along the straight line from the displaced fairlead to the anchor.
@@ -22,15 +20,12 @@ class MooringLines(AbstractLoad):
     `mooring.line1.unstretched_length` (m).
     """
 
-    anchor: Float[Array, "3 l"]  # m, in earth axes
-    fairlead: Float[Array, "3 l"]  # m, in body axes
     stiffness: Mapping[str, Float[Array, ""] | float] = parameters(
         lambda load, line: Parameter("N/m", f"axial stiffness of {line}", 0.0)
     )
     unstretched_length: Mapping[str, Float[Array, ""] | float] = parameters(
         lambda load, line: Parameter("m", f"unstretched length of {line}", 0.0)
     )
-    label_prefix: ClassVar[str] = "mooring"
     source: ClassVar[str] = "Faltinsen 1990, chapter 8"
 
     def tension(
@@ -39,12 +34,10 @@ class MooringLines(AbstractLoad):
         """Tension (N), (l,), and unit vectors to the anchors in body axes, (3, l)."""
         lines = [f"line{i + 1}" for i in range(self.anchor.shape[1])]
         stiffness, unstretched = (jnp.stack([of[line] for line in lines]) for of in (self.stiffness, self.unstretched_length))
-        away = self.anchor - position[:3, None]
-        towards = (matrix[:, :, None] * away[:, None, :]).sum(axis=0) - self.fairlead
-        length = jnp.sqrt((towards**2).sum(axis=0))
-        return stiffness * jnp.maximum(length - unstretched, 0.0), towards / length
+        length, towards = self.chord(position, matrix)
+        return stiffness * jnp.maximum(length - unstretched, 0.0), towards
 
-    def act(self, now: Instant, memory: Any) -> Action:
-        tension, towards = self.tension(now.position, now.rotation)
-        pull = tension * towards
-        return Action(body_force=jnp.concatenate([pull, cross(self.fairlead, pull)]).sum(axis=1))
+    def pull(self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]) -> Float[Array, "3 l"]:
+        """Force of each line at its fairlead (N), body axes, (3, l)."""
+        tension, towards = self.tension(position, matrix)
+        return tension * towards

@@ -1,17 +1,15 @@
 """Elastic ropes whose tension is a table over stretch or strain."""
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.instant import Instant
+from jaxhydro.loads.abstract_lines import AbstractLines
 from jaxhydro.parameters import Parameter, parameters
-from jaxhydro.rotations import cross
 
 
 class TensionTable(NamedTuple):
@@ -33,7 +31,7 @@ class TensionTable(NamedTuple):
         return jnp.where(stretch > 0.0, ((a * past + b) * past + c) * past + d, 0.0)
 
 
-class TensionTableLines(AbstractLoad):
+class TensionTableLines(AbstractLines):
     """Massless elastic ropes from fairlead to anchor, whose tension is a table over stretch or strain.
 
     T = f T_table(l - l0), or T = f T_table((l - l0)/l0), along the straight line from the displaced fairlead to the anchor.
@@ -44,8 +42,6 @@ class TensionTableLines(AbstractLoad):
     is that of one state of the rope. Labels are `mooring.rope1.unstretched_length` (m) and `mooring.rope1.tension_factor` (-).
 
     Attributes:
-        anchor: Anchors (m), earth axes, (3, l).
-        fairlead: Fairleads (m), body axes, (3, l).
         tables: Tension of each rope.
         over_strain: Whether the table of each rope is over strain; else over stretch.
         rope_of: Which of the ropes each line is, from 0.
@@ -53,8 +49,6 @@ class TensionTableLines(AbstractLoad):
         tension_factor: Factor on the table's tension (-) by line; 0: no line.
     """
 
-    anchor: Float[Array, "3 l"]
-    fairlead: Float[Array, "3 l"]
     tables: tuple[TensionTable, ...]
     over_strain: tuple[bool, ...] = eqx.field(static=True)
     rope_of: tuple[int, ...] = eqx.field(static=True)
@@ -64,7 +58,6 @@ class TensionTableLines(AbstractLoad):
     tension_factor: Mapping[str, Float[Array, ""] | float] = parameters(
         lambda load, rope: Parameter("-", f"factor on the tension of {rope}", 0.0)
     )
-    label_prefix: ClassVar[str] = "mooring"
     source: ClassVar[str] = "Faltinsen 1990, chapter 8; a table of tension"
 
     def _by_line(self, values: Mapping[str, Float[Array, ""] | float]) -> Float[Array, " l"]:
@@ -73,31 +66,22 @@ class TensionTableLines(AbstractLoad):
     def strain(self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]) -> Float[Array, " l"]:
         """Stretch over unstretched length (-), below 0 where a line is slack, (l,)."""
         unstretched = self._by_line(self.unstretched_length)
-        return self._directions(position, matrix)[0] / unstretched - 1.0
+        return self.chord(position, matrix)[0] / unstretched - 1.0
 
     def tension(
         self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
     ) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
         """Tension (N), (l,), and unit vectors to the anchors in body axes, (3, l)."""
-        length, towards = self._directions(position, matrix)
+        length, towards = self.chord(position, matrix)
         unstretched = self._by_line(self.unstretched_length)
         stretch = length - unstretched
-        found = jnp.zeros_like(length)
+        tension = jnp.zeros_like(length)
         for number, (table, relative) in enumerate(zip(self.tables, self.over_strain, strict=True)):
-            one = table.tension(stretch / unstretched if relative else stretch)
-            found = jnp.where(np.array(self.rope_of) == number, one, found)
-        return self._by_line(self.tension_factor) * found, towards
+            of_table = table.tension(stretch / unstretched if relative else stretch)
+            tension = jnp.where(np.array(self.rope_of) == number, of_table, tension)
+        return self._by_line(self.tension_factor) * tension, towards
 
-    def _directions(
-        self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
-    ) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
-        """Distance from fairlead to anchor (m), and unit vectors to the anchors in body axes."""
-        away = self.anchor - position[:3, None]
-        towards = (matrix[:, :, None] * away[:, None, :]).sum(axis=0) - self.fairlead
-        length = jnp.sqrt((towards**2).sum(axis=0))
-        return length, towards / length
-
-    def act(self, now: Instant, memory: Any) -> Action:
-        tension, towards = self.tension(now.position, now.rotation)
-        pull = tension * towards
-        return Action(body_force=jnp.concatenate([pull, cross(self.fairlead, pull)]).sum(axis=1))
+    def pull(self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]) -> Float[Array, "3 l"]:
+        """Force of each line at its fairlead (N), body axes, (3, l)."""
+        tension, towards = self.tension(position, matrix)
+        return tension * towards

@@ -33,7 +33,12 @@ class Convergence(NamedTuple):
     period: dict[str, Float[np.ndarray, " n"]]
 
     def change(self, dof: str, band: str) -> Float[np.ndarray, " n"]:
-        """Relative difference (-) of a band integral from that with most elements, (n,)."""
+        """Relative difference (-) of a band integral from that with most elements, (n,).
+
+        Args:
+            dof: Name of the motion.
+            band: Name of the band.
+        """
         values = self.integral[dof][band]
         return values / values[int(np.argmax(self.elements))] - 1
 

@@ -7,14 +7,13 @@ import numpy as np
 
 from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.analysis.spectral import SEGMENT, power_spectrum
+from jaxhydro.plots.spectrum_axes import Density, draw_densities, shade_bands
 from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WAVE, header, stack
 from jaxhydro.units import unit_of
 
 WINDOW = 200.0  # s, of which the waves can be told apart at half a page
 MIN_SEGMENT = 400.0  # s, of the segments of a spectrum
 PANEL_HEIGHT = 1.01  # inches of a panel
-DECADES = 4.5  # of a spectrum, under its largest value
-LOW_BAND, WAVE_BAND = "#e9d9bd", "#d5e6ea"
 Figure = Any
 
 
@@ -23,6 +22,25 @@ def moving(channels: Mapping[str, np.ndarray]) -> list[str]:
     size = {name: float(np.ptp(values)) for name, values in channels.items()}
     largest = {unit: max((size[n] for n in size if unit_of(n) == unit), default=0.0) for unit in ("m", "deg")}
     return [name for name in channels if size[name] > max(1e-6, 1e-3 * largest[unit_of(name)])] or list(channels)[:1]
+
+
+def about_highest_crest(time: np.ndarray, wave: np.ndarray, length: float, start: float) -> np.ndarray:
+    """Samples of the window about the highest crest of a wave.
+
+    Args:
+        time: Sample times (s), (t,).
+        wave: Elevation (m), (t,).
+        length: Length of the window (s), at most that of the record.
+        start: Time from which on the window lies (s).
+
+    Returns:
+        Whether each sample is in the window, (t,).
+    """
+    later = time >= start
+    crest = float(time[later][np.argmax(wave[later])])
+    width = min(length, time[-1] - start)
+    begin = min(max(crest - 0.5 * width, start), time[-1] - width)
+    return (time >= begin) & (time <= begin + width)
 
 
 def record_figure(
@@ -47,11 +65,7 @@ def window_figure(
 ) -> Figure:
     """Figure of `WINDOW` (s) about the highest crest after `start` (s), with second-order waves."""
     names = moving(channels)
-    later = time >= start
-    crest = float(time[later][np.argmax(channels["wave"][later])])
-    width = min(WINDOW, time[-1] - start)
-    begin = min(max(crest - 0.5 * width, start), time[-1] - width)
-    seen = (time >= begin) & (time <= begin + width)
+    seen = about_highest_crest(time, channels["wave"], WINDOW, start)
     figure, axes = stack([PANEL_HEIGHT] * len(names))
     artists = {}
     for ax, name in zip(axes, names, strict=True):
@@ -79,21 +93,11 @@ def spectra_figure(
     artists: dict[str, Any] = {}
     for ax, name in zip(axes, names, strict=True):
         spectrum = power_spectrum(time, channels[name], min(SEGMENT, max(0.5 * (time[-1] - time[0]), MIN_SEGMENT)))
-        seen = (spectrum.frequency <= highest) & (spectrum.frequency > 0)
-        f, density = spectrum.frequency[seen], spectrum.density[seen]
-        for band, (low, high) in bands_of(name, peak_period).items():
-            label, colour = ("low frequency", LOW_BAND) if band == "low_frequency" else ("wave frequency", WAVE_BAND)
-            artists[label] = ax.axvspan(low, high, color=colour, lw=0, zorder=0.5)
+        artists |= shade_bands(ax, bands_of(name, peak_period))
         if name == "wave" and target is not None:
+            f = spectrum.frequency[(spectrum.frequency > 0) & (spectrum.frequency <= highest)]
             (artists["spectrum asked for"],) = ax.plot(f, np.maximum(target(f), 1e-300), color=GREY, lw=0.9, ls=(0, (3, 1.2)))
-        ax.plot(f, density, color=_colour(name), lw=0.7)
-        ax.set_yscale("log")
-        top = max(float(density.max()), 1e-30)
-        ax.set_ylim(top * 10**-DECADES, top * 2.5)
-        ax.set_yticks([10.0**n for n in range(-12, 9) if top * 10**-DECADES <= 10.0**n <= top * 2.5][::2])
-        ax.minorticks_off()
-        ax.set_ylabel(f"{name.capitalize()}\n({unit_of(name)}²/Hz)")
-        ax.set_xlim(0, highest)
+        draw_densities(ax, name, [Density(name, spectrum.frequency, spectrum.density, _colour(name), 0.7)], highest)
     axes[-1].set_xlabel("Frequency (Hz)")
     order = ("low frequency", "wave frequency", "spectrum asked for")
     header(figure, title, {name: artists[name] for name in order if name in artists}, columns=2)

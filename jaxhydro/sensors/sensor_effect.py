@@ -9,7 +9,11 @@ class AbstractSensorEffect(AbstractEffect):
     """Base class of what changes the record of a motion, and not the motion."""
 
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
-        """Reading of the motion sensors at a position (m, rad), (..., 6)."""
+        """Reading of the motion sensors at a position (m, rad), (..., 6).
+
+        Args:
+            position: Position of the platform (m, rad), (..., 6).
+        """
         return position
 
     def clock_lag(self) -> Float[Array, ""] | None:

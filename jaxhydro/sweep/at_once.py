@@ -10,9 +10,10 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from jaxhydro.dynamics.integrate import Kernel, clock, integrate
+from jaxhydro.dynamics.irregular_simulation import excursion_of, farthest
 from jaxhydro.dynamics.model import Model, State
-from jaxhydro.dynamics.simulate import excursion_of, farthest, steps_in
 from jaxhydro.dynamics.statics import EquilibriumError, equilibrium
+from jaxhydro.dynamics.time_steps import steps_in
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.preparation import Preparation
@@ -74,7 +75,7 @@ def simulate_together(
     Returns:
         One motion per sea. None where the platform leaves the box that its sea was prepared for, or has no equilibrium.
     """
-    found: list[SeaMotion | None] = [None] * len(seas)
+    motions: list[SeaMotion | None] = [None] * len(seas)
     alike: dict[Any, list[tuple[int, Any]]] = {}
     for i, sea in enumerate(seas):
         waves = sea.components
@@ -96,8 +97,8 @@ def simulate_together(
         spectra = [None] * len(padded) if bound is None else np.asarray(bound)
         for (i, _), moved, far, spectrum in zip(same, np.asarray(position), np.asarray(reached), spectra):
             if not far > shared.half:
-                found[i] = SeaMotion(moved, spectrum)
-    return found
+                motions[i] = SeaMotion(moved, spectrum)
+    return motions
 
 
 def power_of_two(count: int) -> int:
@@ -122,8 +123,8 @@ def _stacked(each: Sequence[Any]) -> tuple[Any, Any]:
     """
     leaves, tree = zip(*(jax.tree.flatten(one) for one in each))
     alike = [all(x is column[0] for x in column) or not eqx.is_array(column[0]) for column in zip(*leaves)]
-    found = [c[0] if same else np.stack([np.asarray(x) for x in c]) for same, c in zip(alike, zip(*leaves))]
-    return jax.tree.unflatten(tree[0], found), jax.tree.unflatten(tree[0], [None if same else 0 for same in alike])
+    stacked = [c[0] if same else np.stack([np.asarray(x) for x in c]) for same, c in zip(alike, zip(*leaves))]
+    return jax.tree.unflatten(tree[0], stacked), jax.tree.unflatten(tree[0], [None if same else 0 for same in alike])
 
 
 @eqx.filter_jit

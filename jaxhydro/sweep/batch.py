@@ -12,12 +12,13 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
-from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
+from jaxhydro.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.requested_sea import RequestedSea
 from jaxhydro.dynamics.sea_of_request import build_sea
-from jaxhydro.dynamics.simulate import largest_step, simulate
+from jaxhydro.dynamics.simulate import simulate
 from jaxhydro.dynamics.statics import EquilibriumError
+from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.loads import AnyLines
@@ -142,7 +143,7 @@ def run_outcomes(setup: Setup, runs: Sequence[Run]) -> list[RunResults | str]:
 
     They differ from those of `run_outcome` by rounding.
     """
-    found: dict[int, RunResults | str] = {}
+    outcomes: dict[int, RunResults | str] = {}
     seas = {}
     for run in runs:
         try:
@@ -150,9 +151,9 @@ def run_outcomes(setup: Setup, runs: Sequence[Run]) -> list[RunResults | str]:
             if sea.long_crested:
                 seas[run.number] = sea
             else:  # seas of several headings share no preparation
-                found[run.number] = run_outcome(setup, run)
+                outcomes[run.number] = run_outcome(setup, run)
         except Exception as error:
-            found[run.number] = failure_reason(error)
+            outcomes[run.number] = failure_reason(error)
     shared = (setup.times, setup.limit)
     motions = simulate_in_halves(setup.model, list(seas.values()), *shared, precision=setup.plan.precision)
     every = dict(zip(seas, motions))
@@ -160,12 +161,12 @@ def run_outcomes(setup: Setup, runs: Sequence[Run]) -> list[RunResults | str]:
         if (moved := every.get(run.number)) is not None:
             sea = seas[run.number]
             try:
-                found[run.number] = _results(setup, run, sea, moved.position, elevation(sea, setup.times, moved.bound))
+                outcomes[run.number] = _results(setup, run, sea, moved.position, elevation(sea, setup.times, moved.bound))
             except Exception as error:
-                found[run.number] = failure_reason(error)
+                outcomes[run.number] = failure_reason(error)
         elif run.number in seas:  # out of the box that its sea was made for, or without equilibrium
-            found[run.number] = run_outcome(setup, run)
-    return [found[run.number] for run in runs]
+            outcomes[run.number] = run_outcome(setup, run)
+    return [outcomes[run.number] for run in runs]
 
 
 def prepared_for(

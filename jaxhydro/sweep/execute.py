@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
-from jaxhydro.cli.calibrated_model import calibration_file
+from jaxhydro.calibrated_model import calibration_file
 from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.errors import InputError, Problem, read_yaml
@@ -130,7 +130,7 @@ def prepared(sweep: Sweep, source: str) -> PreparedSweep:
         pace = pace_of_platform(sweep.platform)
     except InputError as error:
         raise InputError(f"{source}: platform: {error.source}", error.problems) from None
-    plan, known = plan_of(sweep, source, pace)
+    plan, remarks_in_words = plan_of(sweep, source, pace)
     calibration = None if sweep.calibration is None else calibration_file(sweep.calibration)
     try:
         setup = setup_of(plan, sweep.platform, calibration)
@@ -146,7 +146,7 @@ def prepared(sweep: Sweep, source: str) -> PreparedSweep:
         raise InputError(source, [Problem("scatter", "a sea state that can be", f"none: {named(state)}: {reason}")])
     supports_of(setup, source)
     shares = shares_in_band(plan)
-    known += notes(plan, setup.model, shares, failing)
+    remarks_in_words += notes(plan, setup.model, shares, failing)
     remarks = (
         *setup.model.remarks,
         *wave_remarks(setup.model),
@@ -155,7 +155,7 @@ def prepared(sweep: Sweep, source: str) -> PreparedSweep:
     )
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
     inputs = Inputs(plan, _platform_text(sweep.platform), text)
-    return PreparedSweep(inputs, setup, source, sweep.platform, sweep.calibration, shares, known, remarks)
+    return PreparedSweep(inputs, setup, source, sweep.platform, sweep.calibration, shares, remarks_in_words, remarks)
 
 
 def opened(folder: Path, made: PreparedSweep, restart: bool = False) -> bool:
@@ -214,9 +214,9 @@ def run_all(
     total, earlier = len(before), int((before == DONE).sum())
     done = failed = 0
     since = clock.perf_counter()
-    for found in _answers(folder, batches, how, scheduler):
-        done += sum(good for _, good in found)
-        failed += sum(not good for _, good in found)
+    for outcomes in _answers(folder, batches, how, scheduler):
+        done += sum(good for _, good in outcomes)
+        failed += sum(not good for _, good in outcomes)
         speed = (done + failed) * made.inputs.plan.duration / (clock.perf_counter() - since)
         progress(Progress(earlier + done, failed, total, speed))
     return SessionResult(done + failed, failed, clock.perf_counter() - since, (done + failed) * made.inputs.plan.duration)

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import psutil
 
-from jaxhydro.dynamics.simulate import excursion_of
+from jaxhydro.dynamics.irregular_simulation import excursion_of
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.sweep.at_once import power_of_two
 from jaxhydro.sweep.batch import Setup

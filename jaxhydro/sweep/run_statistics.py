@@ -8,8 +8,9 @@ import numpy as np
 import rainflow
 from jaxtyping import Float
 
+from jaxhydro.analysis.record_statistics import Statistics, statistics
 from jaxhydro.analysis.sea_statistics import bands_of, still
-from jaxhydro.analysis.spectral import Statistics, band_integral, power_spectrum, statistics
+from jaxhydro.analysis.spectral import band_integral, power_spectrum
 from jaxhydro.units import unit_of
 
 STATISTICS = Statistics._fields
@@ -42,8 +43,8 @@ def unit(channel: str) -> str:
 
 def frequencies(time: Float[np.ndarray, " t"]) -> Float[np.ndarray, " f"]:
     """Frequencies (Hz) of `power_spectrum` for records at these times (s), up to `MAX_FREQUENCY`."""
-    found = power_spectrum(time, np.zeros(len(time))).frequency
-    return found[found <= MAX_FREQUENCY * (1 + 1e-9)]
+    lines = power_spectrum(time, np.zeros(len(time))).frequency
+    return lines[lines <= MAX_FREQUENCY * (1 + 1e-9)]
 
 
 def run_results(
@@ -69,15 +70,15 @@ def run_results(
     """
     inside = time >= start
     when = time[inside]
-    size, found = len(frequencies(when)), []
+    size, numbers = len(frequencies(when)), []
     for name, values in channels.items():
         values = still(values[inside])
         spectrum = power_spectrum(when, values)
         limits = bands_of(name, peak_period)
         integrals = [band_integral(spectrum, *limits[band]) if band in limits else math.nan for band in BANDS]
         damage = equivalent_ranges(values, exponents, equivalent_frequency * (when[-1] - when[0]))
-        found.append((np.array(statistics(when, values)), spectrum.density[:size], np.array(integrals), damage))
-    of_statistics, density, areas, ranges = (np.stack(column) for column in zip(*found))
+        numbers.append((np.array(statistics(when, values)), spectrum.density[:size], np.array(integrals), damage))
+    of_statistics, density, areas, ranges = (np.stack(column) for column in zip(*numbers))
     return RunResults(of_statistics, density, areas, ranges, np.stack(list(channels.values())))
 
 

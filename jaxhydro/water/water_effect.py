@@ -18,9 +18,17 @@ class AbstractWaterEffect(AbstractEffect):
     comes_last: ClassVar[bool] = False
 
     def current(self, height: Float[Array, " p"]) -> Float[Array, "3 p"] | None:
-        """Steady current (m/s, earth axes) at heights over still water (m), which is added to the water, or None."""
+        """Steady current (m/s, earth axes) that is added to the water, (3, p), or None.
+
+        Args:
+            height: Heights over still water (m), (p,).
+        """
         return None
 
     def through(self, sea: AbstractSea) -> AbstractSea:
-        """The sea as changed by this effect; the same sea where it is not changed."""
+        """The sea as changed by this effect; the same sea where it is not changed.
+
+        Args:
+            sea: The sea.
+        """
         return sea

@@ -23,7 +23,7 @@ from calibration.discovery.linearisations import Point
 from calibration.discovery.search import Search
 from calibration.discovery.set_up import set_up_study
 from calibration.report.write_report import write_report
-from calibration.residuals.measured_seas import options_of
+from calibration.residuals.wave_options import options_of
 from calibration.results.applied_calibration import apply_calibration
 from calibration.results.write_diagnosis import write_diagnosis
 

@@ -15,8 +15,9 @@ from test_outputs import SCHEMAS, Page, changed, contents
 
 import jaxhydro as jh
 from calibration.commands.diagnose_command import show_diagnosis
-from calibration.discovery.diagnosis import IMPLAUSIBLE_SIZE, Diagnosis, PlausibleRange
+from calibration.discovery.diagnosis import Diagnosis
 from calibration.discovery.refusal import Refusal, RefusalKind
+from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE, PlausibleRange
 from calibration.plots import diagnosis_figures as plots
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words

@@ -17,7 +17,6 @@ from calibration.campaign.load_campaign import load_campaign
 from calibration.discovery import checkpoint, search
 from calibration.discovery.acceptance import Verdict
 from calibration.discovery.diagnose import diagnose
-from calibration.discovery.diagnosis import IMPLAUSIBLE_SIZE
 from calibration.discovery.doubts import abandoned_decays
 from calibration.discovery.effects.candidates import Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
@@ -26,9 +25,10 @@ from calibration.discovery.fit_state import ResidualSummary
 from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.linearisations import Point, Prior
 from calibration.discovery.refusal import Refusal, RefusalKind
+from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE
 from calibration.discovery.search import Search
 from calibration.discovery.set_up import set_up_study
-from calibration.residuals.measured_seas import Options
+from calibration.residuals.wave_options import Options
 from calibration.results.refusal_sentences import describe_refusal
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS

@@ -18,7 +18,8 @@ from calibration.display.arviz_draws import inference_data
 from calibration.report.diagnosis_words import verdict_sentence
 from calibration.report.summary import calibration_sentence, summary_of
 from calibration.result import Calibration
-from calibration.results.write_calibration import dataset, document
+from calibration.results.tests_dataset import dataset
+from calibration.results.write_calibration import document
 from calibration.results.write_diagnosis import document as document_of_diagnosis
 from calibration.results.write_diagnosis import write_diagnosis
 from calibration.uncertainty.bootstrap import Bootstrap

@@ -23,7 +23,7 @@ from calibration.discovery.acceptance import (
 )
 from calibration.discovery.broyden_fit import fit
 from calibration.discovery.checkpoint import _packed, _rebuilt
-from calibration.discovery.diagnosis import HELD_OUT_ERROR, Finding, Rejected, Score
+from calibration.discovery.diagnosis import Finding, Rejected, Score
 from calibration.discovery.diagnosis_conclusion import unexplained_motions
 from calibration.discovery.doubts import doubted_effects, moving_release_notes, outdone_effects, unexplained_note
 from calibration.discovery.effects.candidates import Candidate
@@ -34,6 +34,7 @@ from calibration.discovery.gather import gather_sea
 from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
+from calibration.discovery.reported_effects import HELD_OUT_ERROR
 from calibration.discovery.search import AcceptedEffect
 from calibration.discovery.selection.joint_search import JointSearch
 from calibration.discovery.selection.verified_search import VerifiedSearch

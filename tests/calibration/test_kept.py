@@ -20,7 +20,7 @@ from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.search import Search
 from calibration.discovery.set_up import set_up_study
-from calibration.residuals.measured_seas import Options
+from calibration.residuals.wave_options import Options
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro import fingerprint as fingerprints
 from jaxhydro.errors import CheckpointWarning

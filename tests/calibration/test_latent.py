@@ -16,12 +16,12 @@ from scipy.integrate import solve_ivp
 from scipy.signal import hilbert
 from test_discovery import NOISE, PLATFORM
 
-from calibration.discovery.diagnosis import Law, LawTerm
 from calibration.discovery.gather import highest_frequency
 from calibration.discovery.latent_force.describe_force import described, law_in_words
 from calibration.discovery.latent_force.force_law import LAGGED_TERMS, STILL_WATER_TERMS, RegressionBlock, best_terms, law_of
 from calibration.discovery.latent_force.recover_force import forces_of, latent_forces, latent_of
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest
+from calibration.discovery.reported_forces import Law, LawTerm
 from calibration.report.write_report import write_report
 from calibration.result import Series, TestFit
 from calibration.results.diagnosis_file import read_diagnosis

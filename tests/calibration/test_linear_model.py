@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.search import ListedVariant
-from calibration.discovery.selection.candidate_columns import is_listed
+from calibration.discovery.selection.candidate_passes import is_listed
 from calibration.discovery.selection.cross_validation import held_out_gain, left_out_deviances
 from calibration.discovery.selection.joint_selection import MAX_EFFECTS, JointSelection
 from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, bounded_minimum

@@ -27,7 +27,8 @@ from calibration.result import BandError, Calibration, Estimate
 from calibration.results import schema
 from calibration.results import write_calibration as outputs
 from calibration.results.calibration_file import read_saved, read_values
-from calibration.results.write_calibration import NotFinite, dataset, document, write_calibration
+from calibration.results.tests_dataset import dataset
+from calibration.results.write_calibration import NotFinite, document, write_calibration
 from calibration.results.write_diagnosis import document as document_of_diagnosis
 from jaxhydro.errors import InputError
 from jaxhydro.files import check_folder, staged

@@ -19,14 +19,15 @@ from calibration.fitting.law_parameters import (
 )
 from calibration.fitting.progress import Interrupted, Progress
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
-from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
+from calibration.residuals.measured_seas import compare, seas_of, with_diffraction
 from calibration.residuals.run_segments import run_segments, sea_state, simulate_segments
+from calibration.residuals.wave_options import Options
 from calibration.results.applied_calibration import apply_calibration
 from calibration.results.write_calibration import write_calibration
 from calibration.results.write_laws import document as document_of_laws
 from calibration.results.write_laws import write_laws
 from calibration.vocabulary import LAW_NAMES
-from jaxhydro.cli.calibrated_model import with_calibration
+from jaxhydro.calibrated_model import with_calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
 from jaxhydro.loads.sea_state_law import reference_of as reference_of_loads

@@ -11,7 +11,8 @@ from calibration import load_campaign
 from calibration.campaign.manifest import Recording
 from calibration.campaign.runs import Run
 from calibration.campaign.second_order_hint import second_order_hint
-from calibration.residuals.measured_seas import Options, options_of, sea_of, seas_of
+from calibration.residuals.measured_seas import sea_of, seas_of
+from calibration.residuals.wave_options import Options, options_of
 from jaxhydro.environment import Environment
 from jaxhydro.errors import InputError
 from jaxhydro.waves.irregular import spectrum_components

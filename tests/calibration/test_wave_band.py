@@ -9,7 +9,7 @@ import pytest
 from calibration import load_campaign
 from calibration.campaign.manifest import Manifest, read_manifest
 from calibration.campaign.wave_band import wave_band
-from calibration.residuals.measured_seas import options_of
+from calibration.residuals.wave_options import options_of
 from jaxhydro.errors import InputError
 
 

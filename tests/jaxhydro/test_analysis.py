@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import signal
 
+from jaxhydro.analysis.record_statistics import exceedance, statistics
 from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period
 from jaxhydro.analysis.spectral import (
     BANDS,
@@ -15,11 +16,9 @@ from jaxhydro.analysis.spectral import (
     band_pass,
     band_weights,
     bands,
-    exceedance,
     power_spectrum,
-    statistics,
-    transfer_function,
 )
+from jaxhydro.analysis.transfer_functions import transfer_function
 from jaxhydro.environment import Environment
 from jaxhydro.waves.irregular import spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea

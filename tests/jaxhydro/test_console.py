@@ -12,7 +12,7 @@ from calibration.results.calibration_file import read_saved
 from calibration.results.write_calibration import write_calibration
 from jaxhydro.cli import app as cli
 from jaxhydro.cli import console
-from jaxhydro.cli.app import TRUTH
+from jaxhydro.cli.campaign_commands import TRUTH
 from jaxhydro.cli.console import column_widths, table
 from jaxhydro.errors import suggest_path
 from jaxhydro.platform.schema import builtin_platforms

@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 import jaxhydro as jh
-from jaxhydro.dynamics.statics import Modes
+from jaxhydro.dynamics.natural_modes import Modes
 from jaxhydro.hull.outline import element_outlines
 from jaxhydro.platform.build import members_of
 from jaxhydro.plots.hull_drawing import POINTS, outline

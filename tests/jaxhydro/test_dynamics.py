@@ -15,9 +15,10 @@ from scipy.spatial.transform import Rotation
 import jaxhydro as jh
 from jaxhydro.cli.simulate_command import print_rest
 from jaxhydro.dynamics.integrate import Grid, integrate
+from jaxhydro.dynamics.natural_modes import _one_motion_each
 from jaxhydro.dynamics.response import Response
 from jaxhydro.dynamics.solve6 import accelerate, inverse6
-from jaxhydro.dynamics.statics import _one_motion_each, stable_modes
+from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.integrators import runge_kutta
 from jaxhydro.rotations import angular_velocity, attitude_rates, rotation
 

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import jaxhydro as jh
-from jaxhydro.dynamics.simulate import excursion_of
+from jaxhydro.dynamics.irregular_simulation import excursion_of
 from jaxhydro.platform.build import load_model
 from jaxhydro.sweep.batch import setup_of
 from jaxhydro.sweep.cases import plan_of

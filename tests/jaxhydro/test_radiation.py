@@ -20,8 +20,8 @@ import jaxhydro as jh
 from calibration.discovery.effects.candidates import requested_table_labels, with_candidates
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import NoticeableScales
-from jaxhydro.dynamics.simulate import default_step, memory_step
 from jaxhydro.dynamics.statics import linearised, natural_modes
+from jaxhydro.dynamics.time_steps import default_step, memory_step
 from jaxhydro.errors import InputError
 from jaxhydro.interop.capytaine_radiation import read_capytaine
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients

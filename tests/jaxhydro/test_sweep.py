@@ -11,7 +11,7 @@ from fake_sweep import SWEEP, written
 
 import jaxhydro as jh
 from calibration.report.write_report import write_report
-from jaxhydro.dynamics.simulate import largest_step
+from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.errors import InputError, validate
 from jaxhydro.sweep.batch import Setup, prepared_for, sea_of
 from jaxhydro.sweep.cases import Plan, plan_of

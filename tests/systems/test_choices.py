@@ -14,12 +14,12 @@ from calibration.campaign.load_campaign import load_campaign
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.sea_fit import calibrate_in_waves
-from calibration.residuals.measured_seas import Options
+from calibration.residuals.wave_options import Options
 from jaxhydro.choices import UnknownName, check, nearest, unknown
 from jaxhydro.dynamics.conventions import Conventions, allowed_values
 from jaxhydro.dynamics.integrate import Method, clock
-from jaxhydro.dynamics.simulate import default_step, memory_step
 from jaxhydro.dynamics.statics import stable_modes
+from jaxhydro.dynamics.time_steps import default_step, memory_step
 from jaxhydro.interop.wamit_tables import to_omega
 from jaxhydro.loads import LOADS
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents

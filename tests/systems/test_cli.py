@@ -20,6 +20,7 @@ from typer.testing import CliRunner
 import jaxhydro
 from calibration.results.write_calibration import write_calibration
 from jaxhydro.cli import app as cli
+from jaxhydro.cli.campaign_commands import TRUTH
 from jaxhydro.cli.options import new_folder
 
 PLATFORM = DEMO / "platform.yaml"
@@ -197,7 +198,7 @@ def test_bad_calibrations_are_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("command", ["simulate", "calibrate", "demo"])
 def test_folders_that_cannot_be_written_are_told_before_the_work(command, tmp_path, monkeypatch) -> None:
-    for work in ("jaxhydro.cli.app._model", "calibration.commands.calibrate_command.load_fitted"):
+    for work in ("jaxhydro.cli.model_commands._model", "calibration.commands.calibrate_command.load_fitted"):
         monkeypatch.setattr(work, lambda *_: pytest.fail("the work began"))
     more = {"simulate": [PLATFORM, "--release", "surge=1"], "calibrate": [DEMO], "demo": []}[command]
     file = tmp_path / "file"
@@ -273,7 +274,7 @@ def test_the_demo_compares_with_the_truth_and_makes_the_page(fitted, tmp_path: P
     from benchmarks.make_demo_campaign import TRUE_COEFFICIENTS, TRUE_DAMPING
 
     truth = {f"{group}.{name}": v for group, row in TRUE_COEFFICIENTS.items() for name, v in row.items()}
-    assert truth | {f"linear_damping.{name}": v for name, v in TRUE_DAMPING.items()} == cli.TRUTH
+    assert truth | {f"linear_damping.{name}": v for name, v in TRUE_DAMPING.items()} == TRUTH
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,8 @@ import jaxhydro as jh
 from calibration.commands import calibrate_command as of_campaigns
 from jaxhydro.analysis.sea_statistics import bands_of, summary, tables
 from jaxhydro.cli import app as cli
-from jaxhydro.cli import arguments, sea_command, sea_options
+from jaxhydro.cli import option_choices, sea_command, sea_options
+from jaxhydro.cli.exit_status import NOT_CONVERGED
 from jaxhydro.dynamics.requested_sea import usual_transient
 from jaxhydro.platform.build import model_of
 from jaxhydro.plots import seas as sea_plot
@@ -165,7 +166,7 @@ def test_elements_and_diffraction_in_place_of_the_platforms() -> None:
     pontoons = sum(len(member.heading) for member in platform.members if member.group == "pontoon")
     assert len(fine.hull.elements.length) - len(coarse.hull.elements.length) == 3 * pontoons
     assert model_of(platform).conventions.diffraction == "maccamy_fuchs"
-    none = model_of(platform, arguments.Diffraction.none)  # as the command line gives it
+    none = model_of(platform, option_choices.Diffraction.none)  # as the command line gives it
     assert none.conventions.diffraction == "none" and type(none.conventions.diffraction) is str and none.cylinders is None
 
 
@@ -273,7 +274,7 @@ def test_a_campaign_is_handed_on(tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(of_campaigns, "simulate_campaign", simulate_campaign, raising=False)
     run("simulate", DEMO, "--out", tmp_path)
     options = ["--order", 1, "--stretching", "wheeler", "--diffraction", "none", "--cutoff", 0.2, "--no-figures"]
-    run("simulate", DEMO / "campaign.yaml", *options, "--calibration", "c.json", "--out", tmp_path, status=cli.NOT_CONVERGED)
+    run("simulate", DEMO / "campaign.yaml", *options, "--calibration", "c.json", "--out", tmp_path, status=NOT_CONVERGED)
     usual = {"asked": {}, "calibration": None, "figures": True}
     how = {"order": 1, "stretching": "wheeler", "diffraction": "none", "cutoff": 0.2}
     asked = {"asked": how, "calibration": Path("c.json"), "figures": False}

@@ -18,7 +18,8 @@ import jaxhydro as jh
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.fitting.progress import Interrupted, Progress
 from calibration.report.write_report import write_report
-from calibration.residuals.measured_seas import Diverged, Options
+from calibration.residuals.measured_seas import Diverged
+from calibration.residuals.wave_options import Options
 from calibration.results.applied_calibration import apply_calibration
 from calibration.results.calibration_file import read_saved
 from calibration.results.diagnosis_file import read_diagnosis
@@ -26,6 +27,7 @@ from calibration.results.strip_conventions import DEFAULT_STRIPS, StripConventio
 from calibration.results.write_calibration import write_calibration
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro.cli import app as cli
+from jaxhydro.cli import model_commands
 from jaxhydro.errors import InputError, Problem
 
 DEMO = Path(jh.__file__).parent / "campaigns" / "volturnus-s-decays"
@@ -178,7 +180,7 @@ def test_simulations_have_the_effects_that_were_found(written: Path, tmp_path: P
     assert len(used.model.loads) == len(model.loads) + 2 and read_saved(tmp_path).key == "augmented"
     elsewhere = apply_calibration(path, model, "another")
     assert elsewhere.not_used == ("mass_properties.mass",) and FORCE in elsewhere.values
-    found = cli._model(str(DEMO / "platform.yaml"), path, None, None)
+    found = model_commands._model(str(DEMO / "platform.yaml"), path, None, None)
     assert float(found.values["mass_properties.mass"]) == 1e5 and FORCE in capsys.readouterr().out
 
 
@@ -203,7 +205,7 @@ def test_simulations_have_the_strips_and_seas_that_were_taken(result: Diagnosis,
         apply_calibration(path, used.model, "VolturnUS-S").strips is None
         and StripConventions.of(DEFAULT_STRIPS.applied_to(used.model)) == DEFAULT_STRIPS
     )
-    assert StripConventions.of(cli._model(str(DEMO / "platform.yaml"), path, None, None)) == simpler
+    assert StripConventions.of(model_commands._model(str(DEMO / "platform.yaml"), path, None, None)) == simpler
     assert "directions: earth, drag_speed: component, centripetal: false" in capsys.readouterr().out
     begun: list[Any] = []
     monkeypatch.setattr(

@@ -9,9 +9,9 @@ import numpy as np
 from scipy import signal
 
 from calibration.campaign.signals import wave_height
-from calibration.discovery.diagnosis import ForceCoherence, ForceExcerpt, LatentForce, Law, LawTerm
 from calibration.discovery.latent_force.force_law import LAG_RATIOS, LAGGED_TERMS, columns_of, squared_envelope
 from calibration.discovery.latent_force.recovered_force import RecoveredForce
+from calibration.discovery.reported_forces import ForceCoherence, ForceExcerpt, LatentForce, Law, LawTerm
 from calibration.formatting import listed, number, percent, quantity, readable_unit
 from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period
 from jaxhydro.analysis.spectral import SEGMENT
@@ -113,15 +113,15 @@ def force_coherence(
 
 def coherences(forces: Sequence[RecoveredForce]) -> dict[str, ForceCoherence]:
     """Relation of a force to the motion, and in waves to the elevation and its squared envelope."""
-    found = {name: force_coherence(forces, values, lambda _: (0.0, np.inf)) for name, values in MOTION.items()}
+    coherence = {name: force_coherence(forces, values, lambda _: (0.0, np.inf)) for name, values in MOTION.items()}
     if (wavy := [one for one in forces if one.test.wave is not None]) and len(wavy) == len(forces):
         half = {test.id: 0.5 / record_peak_period(np.asarray(test.wave), test.step) for test in (one.test for one in wavy)}
-        found["elevation"] = force_coherence(
+        coherence["elevation"] = force_coherence(
             wavy, lambda one: np.asarray(one.test.wave), lambda one: (half[one.test.id], np.inf)
         )
         envelope: QuantityOfForce = lambda one: squared_envelope(np.asarray(one.test.wave), one.test.step)  # noqa: E731
-        found["squared_envelope"] = force_coherence(wavy, envelope, lambda one: (0.0, half[one.test.id]))
-    return {name: one for name, one in found.items() if one is not None}
+        coherence["squared_envelope"] = force_coherence(wavy, envelope, lambda one: (0.0, half[one.test.id]))
+    return {name: one for name, one in coherence.items() if one is not None}
 
 
 def _power(pairs: Sequence[tuple[float, float]], ratio: float) -> float | None:
@@ -137,7 +137,7 @@ def growth_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
 
     With the motion's amplitude over cycles of decays; with significant wave height over tests, in every band.
     """
-    cycles, found = [], {}
+    cycles, exponents = [], {}
     for one in forces:
         n = max(round(1 / max(motion_frequency(one), 1e-9) / one.test.step), 4)
         if test_kind(one) != "decay":
@@ -146,7 +146,7 @@ def growth_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
         rows = [(float(np.std(motion[i : i + n])), float(np.std(force[i : i + n]))) for i in range(0, len(force) - n + 1, n)]
         cycles += [row for row in rows if row[1] > MIN_FORCE_OVER_NOISE * one.noise and row[0] > 0]
     if len(cycles) >= MIN_SEGMENTS and (power := _power(cycles, MIN_SIZE_RATIO["decay"])) is not None:
-        found["amplitude"] = power
+        exponents["amplitude"] = power
     seas = [
         (wave_height(one.test.wave, irregular=True), in_bands(one))
         for one in forces
@@ -155,17 +155,17 @@ def growth_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
     for band in seas[0][1] if seas else ():
         pairs = [(height, row[band] ** 0.5) for height, row in seas if row[band] > 0 and height > 0]
         if (power := _power(pairs, MIN_SIZE_RATIO["waves"])) is not None:
-            found[f"significant_height.{band}"] = power
-    return found
+            exponents[f"significant_height.{band}"] = power
+    return exponents
 
 
 def described(motion: str, forces: Sequence[RecoveredForce], law: Law) -> LatentForce:
     """Latent force of a motion over all tests; the largest one of a fitted test is plotted."""
     kinds = {name: [one for one in forces if test_kind(one) == name] for name in ("decay", "waves")}
-    there = {name: rows for name, rows in kinds.items() if any(one.visible for one in rows)}
+    visible = {name: rows for name, rows in kinds.items() if any(one.visible for one in rows)}
     rms = {
         name: float(np.sqrt(np.mean(np.concatenate([one.force[one.inside] ** 2 for one in rows]))))
-        for name, rows in there.items()
+        for name, rows in visible.items()
     }
     fitted = [one for one in forces if one.test.use == "fit"] or list(forces)
     largest = max(fitted, key=lambda one: one.root_mean_square)
@@ -174,8 +174,8 @@ def described(motion: str, forces: Sequence[RecoveredForce], law: Law) -> Latent
         motion,
         "N m" if DOFS.index(motion) > 2 else "N",
         rms,
-        {name: shares_of(rows) for name, rows in there.items()},
-        {name: coherences(rows) for name, rows in there.items()},
+        {name: shares_of(rows) for name, rows in visible.items()},
+        {name: coherences(rows) for name, rows in visible.items()},
         growth_of(forces),
         law,
         "",

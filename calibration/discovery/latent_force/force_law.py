@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import hilbert
 
-from calibration.discovery.diagnosis import Law, LawTerm
 from calibration.discovery.latent_force.recovered_force import RecoveredForce
+from calibration.discovery.reported_forces import Law, LawTerm
 from jaxhydro.environment import DOFS
 
 MAX_TERMS = 3  # terms of a law
@@ -166,18 +166,18 @@ def best_terms(products: np.ndarray, size: int) -> tuple[tuple[int, ...], np.nda
     """
     scale = np.sqrt(np.maximum(np.diag(products), 1e-300))
     unit = products / np.outer(scale, scale)
-    there = [i for i in range(len(scale) - 1) if scale[i] > 1e-9 * scale[:-1].max()]
-    sets = np.array([some for some in combinations(there, size) if sum(i in LAGGED_TERMS for i in some) < 2])
+    usable = [i for i in range(len(scale) - 1) if scale[i] > 1e-9 * scale[:-1].max()]
+    sets = np.array([some for some in combinations(usable, size) if sum(i in LAGGED_TERMS for i in some) < 2])
     if not len(sets):
         return (), np.zeros(0)
     gram = unit[sets[:, :, None], sets[:, None, :]] + 1e-9 * np.eye(size)
     onto = unit[sets, -1]
-    found = np.linalg.solve(gram, onto[..., None])[..., 0]
-    left = np.where(np.abs(found).max(axis=1) < MAX_TERM_RATIO, 1 - (found * onto).sum(axis=1), np.inf)
+    solutions = np.linalg.solve(gram, onto[..., None])[..., 0]
+    left = np.where(np.abs(solutions).max(axis=1) < MAX_TERM_RATIO, 1 - (solutions * onto).sum(axis=1), np.inf)
     if not np.isfinite(left).any():
         return (), np.zeros(0)
     i = int(np.flatnonzero(left <= (1 + SIMPLER_LAW_MARGIN) * left.min() + 1e-4)[0])
-    return tuple(int(k) for k in sets[i]), found[i] * scale[-1] / scale[sets[i]]
+    return tuple(int(k) for k in sets[i]), solutions[i] * scale[-1] / scale[sets[i]]
 
 
 def explained_share(parts: Iterable[RegressionBlock], chosen: Sequence[int], coefficients: np.ndarray) -> float:

@@ -30,11 +30,11 @@ from jaxtyping import Array, Float
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from calibration.discovery.diagnosis import LatentForce
 from calibration.discovery.gather import highest_frequency
 from calibration.discovery.latent_force.describe_force import described
 from calibration.discovery.latent_force.force_law import law_of
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest, filtered
+from calibration.discovery.reported_forces import LatentForce
 from calibration.result import Calibration
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.statics import equilibrium, linearised

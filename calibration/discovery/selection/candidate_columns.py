@@ -10,13 +10,13 @@ from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
 from calibration.discovery.fit_state import FitState
-from calibration.discovery.linearisations import Linearisation, Point
+from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.search import ListedVariant
+from calibration.discovery.selection.candidate_passes import CandidateValues, first_passes, is_nearly_known, jobs_of, packed
 from calibration.discovery.selection.linear_model import LinearModel
 from calibration.discovery.selection.study_linear_model import linear_model
 from calibration.discovery.selection.subsets import Variant
 
-CandidateValues = tuple[Candidate, Mapping[str, float]]  # a candidate at values of its shapes
 LABORATORY_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position", "static_offset")
 LABORATORY_LOG_ODDS, PHYSICS_LOG_ODDS = math.log(0.05), math.log(0.02)  # one effect is expected, among some forty
 
@@ -92,80 +92,18 @@ def candidate_columns(
         anew: Directions along which the model is linearised anew, at the same point; None: `look` is taken.
     """
     study = fits.study
-    others = [one for one in candidates if not set(study.index(one.amplitudes)) <= set(fits.base)]
-    # the finders of further shapes need slopes first; what those passes have no room for goes with what is found
-    declared = [(one, at) for one in others for at in one.grid or ({},)]
-    declared = [(one, at) for one, at in declared if among is None or any(is_listed(one, at, it) for it in among)]
-    passes = packed(sorted(declared, key=lambda pair: pair[0].shape_finder is None), study.width)
-    first = [some for some in passes if any(one.shape_finder is not None for one, _ in some)]
-    later = [pair for some in passes[len(first) :] for pair in some]
+    first, later = first_passes(fits, candidates, among)
     active = look.active if anew is None else tuple(anew)
     base = [] if anew is None else [(look.place, active)]
-    seen = study.linearise_all([*base, *jobs_of(fits, look.place, active, first)])
-    look, seen = (look, seen) if anew is None else (seen[0], seen[1:])
+    # the model and the first candidates are linearised together
+    looks = study.linearise_all([*base, *jobs_of(fits, look.place, active, first)])
+    if anew is not None:
+        look, *looks = looks
     gathered = _Columns(fits, look)
-    for one in (*chosen, *candidates):
-        if set(study.index(one.amplitudes)) <= set(fits.base):
-            gathered.add_nearly_known(one)
-        elif one in chosen:
-            gathered.add(one, [look.active.index(i) for i in study.index(one.labels)], {})
-    last = packed([*gathered.take(first, seen), *later], study.width)
+    gathered.add_linearised(chosen, candidates)
+    last = packed([*gathered.take(first, looks), *later], study.width)
     gathered.take(last, study.linearise_all(jobs_of(fits, look.place, active, last)))
-    return CandidateColumns(
-        linear_model(fits, look, np.hstack(gathered.slopes), gathered.directions),
-        tuple(range(len(fits.base))),
-        tuple(gathered.variants),
-        tuple(gathered.values),
-        tuple(gathered.directions),
-        np.repeat(np.arange(len(fits.study.series)), fits.study.dof.shape[1]),
-        look,
-    )
-
-
-def jobs_of(
-    fits: EffectFits, place: Point, active: Sequence[int], passes: Sequence[Sequence[CandidateValues]]
-) -> list[tuple[Point, tuple[int, ...]]]:
-    """Points and directions of passes along candidates.
-
-    Args:
-        fits: Study, candidates, priors.
-        place: The point of the model.
-        active: The model's own directions, which are left out.
-        passes: Candidates and values of their shapes.
-    """
-    jobs = []
-    for some in passes:
-        there = fits.with_values(place, {k: v for _, at in some for k, v in at.items()})
-        free = dict.fromkeys(i for one, _ in some for i in fits.study.index(one.amplitudes) if i not in active)
-        jobs.append((there, tuple(free)))
-    return jobs
-
-
-def is_listed(one: Candidate, at: Mapping[str, float], entry: ListedVariant) -> bool:
-    """Whether an entry of a list means a candidate at declared values of its shapes; one with other values means all."""
-    other = entry.values not in (one.grid or ({},))
-    return one.name == entry.name and (one.shape_finder is not None or other or entry.values == at)
-
-
-def packed(some: Sequence[CandidateValues], width: int) -> list[list[CandidateValues]]:
-    """Candidates at values of their shapes in as few passes as possible, in their order.
-
-    A pass has every candidate at one of its values at most, and at most so many directions.
-
-    Args:
-        some: Candidates and values.
-        width: Directions of a pass.
-    """
-    passes: list[list[CandidateValues]] = []
-    for one, at in some:
-        for there in passes:
-            room = width - sum(len(other.amplitudes) for other, _ in there)
-            if len(one.amplitudes) <= room and all(other is not one for other, _ in there):
-                there.append((one, at))
-                break
-        else:
-            passes.append([(one, at)])
-    return passes
+    return gathered.columns()
 
 
 class _Columns:
@@ -197,6 +135,19 @@ class _Columns:
         odds = (LABORATORY_LOG_ODDS if laboratory else PHYSICS_LOG_ODDS) - math.log(max(len(one.grid), 1))
         self.variants.append(Variant(one.name, tuple(columns), odds, laboratory))
         self.values.append(values)
+
+    def add_linearised(self, chosen: Sequence[Candidate], candidates: Sequence[Candidate]) -> None:
+        """Add the effects whose slopes the model's own linearisation has.
+
+        Args:
+            chosen: The effects in the model.
+            candidates: Other candidates, of which those with nearly known parameters are added.
+        """
+        for one in (*chosen, *candidates):
+            if is_nearly_known(self.fits, one):
+                self.add_nearly_known(one)
+            elif one in chosen:
+                self.add(one, [self.look.active.index(i) for i in self.study.index(one.labels)], {})
 
     def add_nearly_known(self, one: Candidate) -> None:
         """Add an effect whose parameters move a little in every fit. Second columns of the same slopes let them go further."""
@@ -243,3 +194,15 @@ class _Columns:
             lines = (look.slopes[:, -1].reshape(-1, 2) @ [1, 1j]) * factor
             secant = np.stack([lines.real, lines.imag], axis=1).reshape(-1, 1)
             self.add(one, self.append(secant, look.active[-1:]), far.values)
+
+    def columns(self) -> CandidateColumns:
+        """The linear model of what was gathered."""
+        return CandidateColumns(
+            linear_model(self.fits, self.look, np.hstack(self.slopes), self.directions),
+            tuple(range(len(self.fits.base))),
+            tuple(self.variants),
+            tuple(self.values),
+            tuple(self.directions),
+            np.repeat(np.arange(len(self.study.series)), self.study.dof.shape[1]),
+            self.look,
+        )

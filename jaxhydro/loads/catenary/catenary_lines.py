@@ -7,19 +7,17 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.abstract_lines import AbstractLines
 from jaxhydro.loads.catenary.catenary_profile import Segments, length_on_seabed
 from jaxhydro.loads.catenary.catenary_tension import end_tension
-from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import Parameter, parameter, parameters
-from jaxhydro.rotations import cross
 
 LEAST_SPAN = 1e-6  # m: horizontal distance below which the direction to the anchor is none
 LEAST_HEIGHT = 1e-6  # height of the fairlead over the seabed, over the line's length
 LEAST_WEIGHT = 1e-12  # weight of a line without weight, over its axial stiffness
 
 
-class CatenaryLines(AbstractLoad):
+class CatenaryLines(AbstractLines):
     """Elastic mooring lines with weight, from fairleads to anchors, in static balance at every instant.
 
     A line consists of segments of one or several types. Where the anchor is on the seabed, the line may rest there, with
@@ -31,8 +29,6 @@ class CatenaryLines(AbstractLoad):
     segments, counted from the anchor, `mooring.line1.anchor_shift` (m), and `mooring.seabed_friction` (-).
     """
 
-    anchor: Float[Array, "3 l"]  # m, in earth axes
-    fairlead: Float[Array, "3 l"]  # m, in body axes
     types: tuple[tuple[str, ...], ...] = eqx.field(static=True)  # of the segments of each line, from the anchor
     grounded: tuple[bool, ...] = eqx.field(static=True)  # whether the anchor of each line is on the seabed
     axial_stiffness: Mapping[str, Float[Array, ""] | float] = parameters(
@@ -48,7 +44,6 @@ class CatenaryLines(AbstractLoad):
         lambda load, name: Parameter("m", f"shift of the anchor of {name} away from the platform", -50.0, 50.0)
     )
     seabed_friction: Float[Array, ""] = parameter("-", "friction coefficient of lines on the seabed", 0.0, 3.0)
-    label_prefix: ClassVar[str] = "mooring"
     source: ClassVar[str] = "Jonkman 2007, NREL/TP-500-41958, section 2.6; Irvine 1981"
 
     def tension(
@@ -64,7 +59,7 @@ class CatenaryLines(AbstractLoad):
             Tension (N), (l,), and unit vectors of the pull in body axes, (3, l). The tension is NaN where no balance was
             found.
         """
-        pull = self._pull(position, matrix)
+        pull = self.pull(position, matrix)
         square = (pull**2).sum(axis=0)
         size = jnp.sqrt(jnp.where(square > 0, square, 1.0))
         return jnp.where(square > 0, size, 0.0), pull / size
@@ -72,10 +67,6 @@ class CatenaryLines(AbstractLoad):
     def on_seabed(self, vertical: Float[Array, " l"]) -> Float[Array, " l"]:
         """Unstretched length of each line that rests on the seabed (m), with a vertical tension at the fairlead (N)."""
         return length_on_seabed(vertical, self.segments())
-
-    def act(self, now: Instant, memory: Any) -> Action:
-        pull = self._pull(now.position, now.rotation)
-        return Action(body_force=jnp.concatenate([pull, cross(self.fairlead, pull)]).sum(axis=1))
 
     def segments(self) -> Segments:
         """The lines as the equations read them, from the fairlead down; numbers of 0 are replaced by small ones."""
@@ -96,8 +87,8 @@ class CatenaryLines(AbstractLoad):
         friction = jnp.broadcast_to(self.seabed_friction, total.shape)
         return Segments(length, weight, stiffness, friction, jnp.array(self.grounded))
 
-    def _pull(self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]) -> Float[Array, "3 l"]:
-        """Force of each line at its fairlead (N), body axes."""
+    def pull(self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]) -> Float[Array, "3 l"]:
+        """Force of each line at its fairlead (N), body axes, (3, l)."""
         segments = self.segments()
         radial = (self.anchor - self.fairlead)[:2]
         shift = jnp.stack([self.anchor_shift[f"line{i + 1}"] for i in range(len(self.types))])

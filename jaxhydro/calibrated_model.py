@@ -8,9 +8,15 @@ from jaxhydro.waves.sea_state import SeaState
 
 
 class UsedCalibration(NamedTuple):
-    """Values of a calibration in a model, by label; the sea state (m, s) that exponents among them count from; why they may not
-    be this platform's; how strips are taken with them (`strip_conventions.StripConventions`), where the platform says
-    otherwise."""
+    """Values of a calibration that a model has.
+
+    Attributes:
+        values: Calibrated values, by label.
+        reference: Sea state that exponents among the values count from (m, s); None without exponents.
+        warnings: Reasons why the values may not be this platform's.
+        strips: Conventions of strip loads (`strip_conventions.StripConventions`), where they differ from the platform's; else
+            None.
+    """
 
     values: dict[str, float]
     reference: SeaState | None
@@ -19,8 +25,21 @@ class UsedCalibration(NamedTuple):
 
 
 def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple[Model, UsedCalibration]:
-    """`calibrated`, with what is to be known, and nothing is printed."""
-    from calibration.residuals.measured_seas import non_default_options
+    """Model with the values, laws and effects of a calibration.
+
+    Args:
+        model: The model as the platform declares it.
+        asked: The platform as it was asked for, a name or a file.
+        name: The platform's own name.
+        source: A calibration.json or diagnosis.json.
+
+    Returns:
+        The model, and the values in it with warnings.
+
+    Raises:
+        InputError: The file is no calibration, or has values that the model lacks.
+    """
+    from calibration.residuals.wave_options import non_default_options
     from calibration.results.applied_calibration import apply_calibration
 
     used = apply_calibration(source, model, asked, everything=True)
@@ -37,7 +56,11 @@ def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple
 
 
 def calibration_file(path: str) -> Path:
-    """The diagnosis.json or calibration.json of a folder, or the file itself."""
+    """Path of the diagnosis.json or calibration.json in a folder, or of the file itself.
+
+    Args:
+        path: Folder or file.
+    """
     from calibration.results.calibration_file import file_of
 
     return file_of(path)
