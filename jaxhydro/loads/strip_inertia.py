@@ -41,7 +41,7 @@ class StripInertia(AbstractLoad):
             return Action(strip_force=second, element_mass=mass, end_force=at_ends, body_force=on_body)
         density, volume = now.environment.density, now.strip_shape.volume
         lid, moment = (0.0, None) if now.hull.waterplane is None else now.hull.waterplane.act(now)
-        if second is not None:
+        if second is not None and on_body is not None:
             lid, moment = lid + second, on_body if moment is None else moment + on_body
         if flow.diffracted is None:
             force = now.over_strips(density + mass) * volume * flow.acceleration

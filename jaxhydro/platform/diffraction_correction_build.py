@@ -76,7 +76,8 @@ def strip_forces(
     at_rest = model.with_conventions(wetting="mean", waves_at="mean")
     own = tuple(load for load in model.loads if isinstance(load, StripInertia | EndInertia))
     at_rest = dataclasses.replace(at_rest, loads=(*own, CoveredEnds()), water=(), sensors=())
-    waves = components(np.ones(len(omega)), omega, model.environment, heading=np.full(len(omega), heading), phase=0.0)
+    ones = on_device(np.ones(len(omega)))
+    waves = components(ones, on_device(omega), model.environment, heading=heading * ones, phase=0.0)
     parts = [np.asarray(part) for part in _forces(at_rest, PlaneWaves.free(waves, model.environment), keys)]
     base, each = (real + 1j * imaginary for real, imaginary in (parts[:2], parts[2:]))
     return base.T, np.moveaxis(each, 0, 2)

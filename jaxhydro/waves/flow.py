@@ -82,9 +82,9 @@ class Flow(eqx.Module):
         """The same flow along earth axes."""
         if (axes := self.axes) is None:
             return self
-        extra = (None if field is None else axes @ field for field in (self.diffracted, self.tuned))
+        diffracted, tuned = (None if field is None else axes @ field for field in (self.diffracted, self.tuned))
         gradient = None if self.gradient is None else jnp.einsum("ia,abn,jb->ijn", axes, self.gradient, axes)
-        return Flow(axes @ self.velocity, axes @ self.acceleration, self.pressure, *extra, gradient=gradient)
+        return Flow(axes @ self.velocity, axes @ self.acceleration, self.pressure, diffracted, tuned, None, gradient)
 
 
 class StripFlow(eqx.Module):

@@ -183,15 +183,15 @@ class SupportSea(AbstractSea):
         place = self.along @ points[:2] - self.middle
         level, above = stretched(self, self.stretching, time, points, self.environment.depth)
         if above is None:
-            rows = (jnp.concatenate([even, along_waves]), jnp.concatenate([odd, upwards]))
-            along, up = field(*rows, k, place, level, fade)
+            quantities = (jnp.concatenate([even, along_waves]), jnp.concatenate([odd, upwards]))
+            along, up = field(*quantities, k, place, level, fade)
         else:
             slope = jnp.tile(k, 2) * tanh
-            rows = (
+            quantities = (
                 jnp.concatenate([even, odd * slope / tanh**2, along_waves]),
                 jnp.concatenate([odd, even * slope, upwards]),
             )
-            along, up = field(*rows, k, place, level, fade)
+            along, up = field(*quantities, k, place, level, fade)
         changes = [one[len(one) - len(slopes) :] for one in (along, up)]
         along, up = (one[: len(one) - len(slopes)] for one in (along, up))
         if above is not None:
@@ -211,11 +211,11 @@ class SupportSea(AbstractSea):
         axes = jnp.zeros((3, 2)).at[:2, 0].set(self.along).at[2, 1].set(1.0)
         diffracted, tuned = [*excited, None, None][:2]
         velocity, acceleration = (jnp.stack([along[i], up[i]]) for i in (0, 1))
-        slope = None
+        flow_gradient = None
         if gradient:  # the flow has no divergence and no rotation
             stretching, shear = map(self._met, changes)
-            slope = jnp.stack([jnp.stack([stretching, shear]), jnp.stack([shear, -stretching])])
-        return Flow(velocity, acceleration, along[2], diffracted, tuned, axes, slope)
+            flow_gradient = jnp.stack([jnp.stack([stretching, shear]), jnp.stack([shear, -stretching])])
+        return Flow(velocity, acceleration, along[2], diffracted, tuned, axes, flow_gradient)
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
         place = self.along @ points - self.middle

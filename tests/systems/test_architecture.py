@@ -29,6 +29,9 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
     "drag_flow": "*",
     "per_dof": "*",
     "instant": "*",
+    "forces_at_rest": "*",
+    "slender_flow": "*",
+    "slow_displacement": "*",
 }
 EDGE = {  # third-party or built-in, and the only folders or modules that may use it
     "matplotlib": {"jaxhydro.plots", "jaxhydro.sweep.sweep_figures", "calibration.plots"},

@@ -14,7 +14,6 @@ from test_cli import cache, run  # noqa: F401
 import jaxhydro as jh
 from calibration.commands import calibrate_command as of_campaigns
 from jaxhydro.analysis.sea_statistics import bands_of, summary, tables
-from jaxhydro.cli import app as cli
 from jaxhydro.cli import option_choices, sea_command, sea_options
 from jaxhydro.cli.exit_status import NOT_CONVERGED
 from jaxhydro.dynamics.requested_sea import usual_transient
