@@ -7,14 +7,14 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.dynamics.conventions import Conventions
+from jaxhydro.dynamics.member_flow import flow_at_lids, flow_past, flow_past_slender
 from jaxhydro.environment import Environment
 from jaxhydro.hull.hull import Hull, Wetted
 from jaxhydro.hull.submerged import EndShape, Lines, StripShape
 from jaxhydro.loads.forces_at_rest import ForcesAtRest
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.slender_flow import SlenderFlow, slender_flow
 from jaxhydro.rotations import rotation, turned
-from jaxhydro.waves.flow import Cylinders, EndFlow, Flow, StripFlow
+from jaxhydro.waves.flow import Cylinders
 from jaxhydro.waves.sea import AbstractSea
 
 
@@ -88,11 +88,11 @@ def instant(
     slender = None
     if second_order is not None:
         share = second_order if replaced is None else second_order * (1 - replaced)
-        slender = _slender(share, velocity, hull, submerged, matrix, flow)
+        slender = flow_past_slender(share, velocity, hull, submerged.reach, matrix, flow)
         flow = None if flow is None else flow.convected(second_order, cylinders)
     if flow is not None and replaced is not None:
         flow = flow.weakened(1 - replaced)
-    strip_flow, end_flow = _flow_past(flow, still, submerged, matrix, hull)
+    strip_flow, end_flow = flow_past(flow, still, submerged.ends, matrix, hull)
     covered, extent, shape = submerged.covered, submerged.extent, hull.strips.shape
     strip_shape = StripShape(covered * shape * extent[0] * extent[1], covered * extent[::-1])
     added_mass_part, added_mass_volume = submerged.elements, strip_shape.volume
@@ -125,7 +125,7 @@ def instant(
         forces_at_rest(excitation),
         _wetted_at_rest(hull).elements if mass_replaced and replaced is None else None,
         slender,
-        _lid(flow, matrix, hull),
+        flow_at_lids(flow, matrix, hull),
     )
 
 
@@ -215,58 +215,3 @@ def _points(
     displaced = position[:3, None] + turned(matrix, points)
     level = points if conventions.waves_at == "mean" else displaced
     return jnp.concatenate([level[:2], (points if conventions.wetting == "mean" else displaced)[2:]])
-
-
-def _flow_past(
-    flow: Flow | None, still: Float[Array, " l"], submerged: _Submerged, matrix: Float[Array, "3 3"], hull: Hull
-) -> tuple[StripFlow, EndFlow]:
-    """Flow past strips and ends.
-
-    Args:
-        flow: Flow at `_points`; None in still water.
-        still: Velocity (m/s) of still water relative to the lines, (l,).
-        submerged: Submerged part of the hull.
-        matrix: Rotation from body to earth axes.
-        hull: The hull.
-    """
-    own, own_end = hull.split(still)
-    if flow is None:
-        return StripFlow(own, None), EndFlow(own_end, None, None, submerged.ends)
-    ends, n, whole = hull.ends, len(hull.strips.element), hull.ends_without_faces
-    axes = matrix if flow.axes is None else flow.axes.T @ matrix
-    toward = (axes @ hull.strips.directions.reshape(3, 2 * n)).reshape(len(axes), 2, n)
-    toward_end = axes @ ends.axis
-
-    def across(field: Float[Array, "a k"]) -> Float[Array, "2 n"]:
-        return (toward * field[:, None, :n]).sum(axis=0)
-
-    diffracted, tuned = (None if field is None else across(field) for field in (flow.diffracted, flow.tuned))
-    strips = StripFlow(own + across(flow.velocity), across(flow.acceleration), diffracted, tuned, flow.pressure[:n])
-    at = jnp.concatenate([jnp.arange(n, n + whole), jnp.array(ends.strip, dtype=int)]) if ends.strip else slice(n, n + whole)
-    velocity, acceleration = ((toward_end * field[:, at]).sum(axis=0) for field in (flow.velocity, flow.acceleration))
-    return strips, EndFlow(own_end + velocity, acceleration, flow.pressure[at], submerged.ends)
-
-
-def _slender(
-    share: Float[Array, ""],
-    velocity: Float[Array, "6"],
-    hull: Hull,
-    submerged: _Submerged,
-    matrix: Float[Array, "3 3"],
-    flow: Flow | None,
-) -> SlenderFlow:
-    """Flow past slender members to second order, from the flow at `_points`."""
-    if flow is None or flow.gradient is None:
-        return slender_flow(share, velocity, hull, submerged.reach, None, None)
-    axes = (matrix if flow.axes is None else flow.axes.T @ matrix).T
-    gradient = jnp.einsum("ia,abp,jb->ijp", axes, flow.gradient, axes)
-    return slender_flow(share, velocity, hull, submerged.reach, axes @ flow.velocity, gradient)
-
-
-def _lid(flow: Flow | None, matrix: Float[Array, "3 3"], hull: Hull) -> tuple[Float[Array, " k"], Float[Array, "3 k"]] | None:
-    """Pressure over density (m²/s²) and acceleration (m/s², body axes) at `Hull.leaning`, if any."""
-    if flow is None or hull.leaning is None:
-        return None
-    first = len(hull.strips.element) + hull.ends_without_faces
-    axes = matrix if flow.axes is None else flow.axes.T @ matrix
-    return flow.pressure[first:], axes.T @ flow.acceleration[:, first:]
