@@ -74,6 +74,10 @@ def run(figures: Path) -> Section:
         "1 across columns, 1.5 across pontoons), the tables are whole, and the tracked point is that of the "
         f"section before (x = {TRACKED['sensor_reference.x']:g} m, z = {TRACKED['sensor_reference.z']:g} m).",
         "",
+        "- *Second-order forces*: `second_order_forces: slender_body`.",
+        "- *Around strips*: the same, and the table corrects the strips (`second_order: strips`); no drift table.",
+        "- *Tables*: excitation and drift in place of the strips' inertial wave load.",
+        "",
     ]
     for band, words in (("wave_frequency", "Wave frequency"), ("low_frequency", "Low frequency")):
         rows = []
