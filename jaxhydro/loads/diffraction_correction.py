@@ -17,7 +17,7 @@ Key = tuple[Part, str, str]
 
 
 class DiffractionCorrection(AbstractLoad):
-    """Difference between a table's first-order wave force and that of the strips at rest.
+    """Difference between a table's first-order wave force and that of the strips at rest (Newman 1977, section 6.15).
 
     F_i(t) = s Re sum_k (X_i(w_k) - S_i(w_k)) A_k exp(i (w_k t - k x)), X of the table and S of strips and ends of the upright
     platform in still water up to its waterline, earth axes. With s = 1 the first-order force is the table's, whatever the

@@ -217,7 +217,7 @@ def test_a_short_key_has_the_units_of_its_labels(key):
     """Those of the loads, %, where there is a whole; and some catalogue has labels that it is about."""
     units = {parse_unit(unit).powers for unit in STATED_SIZES[key][1] if unit != "%"}
     labels = [label for label in ranges("semisubmersible") if is_about(key, label)]
-    tables = ("computed_excitation", "computed_radiation", "computed_added_mass", "drift_transfer")
+    tables = ("computed_excitation", "computed_radiation", "computed_added_mass", "diffraction_correction", "drift_transfer")
     later = ("linear_damping", "stiffness", "added_mass", *tables)
     assert labels or key in later
     model = case("semisubmersible")[0]
