@@ -57,6 +57,7 @@ class StripInertia(AbstractLoad):
         """Second-order forces on the added mass: on strips, ends and body (`SlenderBodyForces`); None without them."""
         if (slender := now.slender) is None:
             return None, None, None
-        on_strips, moment = slender.on_strips(now.hull, now.strip_shape, now.over_strips(mass))
-        on_ends, force = slender.on_ends(now.hull, now.end_shape, now.over_strips(mass), now.end_flow.wet)
+        of_strips = now.over_strips(mass)
+        on_strips, moment = slender.on_strips(now.hull, now.strip_shape, of_strips)
+        on_ends, force = slender.on_ends(now.hull, now.end_shape, of_strips, now.end_flow.wet)
         return on_strips, on_ends, moment + force
