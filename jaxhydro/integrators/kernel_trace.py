@@ -65,6 +65,9 @@ def _array(x: Any) -> Any:
 
 def _bind(made: Plan, equation: core.JaxprEqn, values: list[Any]) -> list[Any]:
     """One operation: at once where nothing varies, else planned."""
+    results = [type_of(x) for x in equation.outvars]
+    if all(x.size == 0 for x in results):  # no element that could vary
+        return [np.empty(x.shape, x.dtype) for x in results]
     name, outside = equation.primitive.name, [x.traced if isinstance(x, Value) else _array(x) for x in values]
     if all(x is not None for x in outside):
         if not any(isinstance(x, jax.core.Tracer) for x in outside):

@@ -75,6 +75,18 @@ def test_what_a_kernel_cannot_do_is_told():
         )
 
 
+def test_arrays_without_elements_are_no_part_of_a_kernel():
+    def rate(driver, time, y):
+        empty = -y[:0]
+        return (jnp.concatenate([-y, empty]) + empty.sum() + jnp.zeros((3, 0)) @ empty,)
+
+    y, start, step = jnp.arange(3.0), jnp.zeros(()), jnp.asarray(STEP)
+    options = {"rate": rate, "capacity": 4, "shown": 3}
+    found = jax.vmap(lambda driver: kernel_loop.march(driver, y, start, step, interpret=True, **options))((jnp.zeros((2, 1)),))
+    exact = adams_bashforth.forward((), y, start, step, jnp.asarray(4), **options)
+    np.testing.assert_allclose(found[0], exact, rtol=0, atol=1e-14)
+
+
 def test_a_kernel_is_for_one_scheme():
     with pytest.raises(ValueError, match="the kernel is for method 'ab4' with adjoint 'forward', found 'rk4' with 'forward'"):
         integrate(None, None, None, None, None, 3, "rk4", kernel="gpu")
