@@ -1,6 +1,7 @@
-"""Fewer and quicker compilations: jit for programs that run a few times, and arrays without a program."""
+"""Fewer and quicker compilations: jit for programs that run a few times or in threads, and arrays without a program."""
 
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Hashable
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
@@ -35,6 +36,32 @@ def quick_jit(fun: Callable[P, R]) -> Callable[P, R]:
         return found
 
     return compiled
+
+
+def jit_once(fun: Callable[P, R]) -> Callable[P, R]:
+    """`equinox.filter_jit` that compiles once when several threads ask for the same program.
+
+    JAX compiles it in every thread that calls before the first compilation has ended.
+
+    Args:
+        fun: The function.
+    """
+    jitted: Callable[P, R] = eqx.filter_jit(fun)
+    lock, compiled = threading.Lock(), set[Hashable]()
+
+    @wraps(fun)
+    def alone_at_first(*args: P.args, **kwargs: P.kwargs) -> R:
+        leaves, structure = jax.tree.flatten((args, kwargs))
+        kinds = ((leaf.shape, leaf.dtype) if eqx.is_array(leaf) else leaf for leaf in leaves)
+        key = (structure, *kinds)
+        if key in compiled:
+            return jitted(*args, **kwargs)
+        with lock:
+            found = jitted(*args, **kwargs)
+            compiled.add(key)
+        return found
+
+    return alone_at_first
 
 
 def on_device(values: ArrayLike) -> jax.Array:

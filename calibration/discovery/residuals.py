@@ -3,20 +3,20 @@
 Directions are data, so that one compiled program scores every candidate effect and refits any few of them.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import DecayProblem
+from calibration.residuals.decays import DecayData, DecayProblem
 from jaxhydro.dynamics.integrate import Grid, integrate
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.statics import equilibrium
+from jaxhydro.quick_jit import jit_once
 from jaxhydro.waves.support_sea import SupportSea
 
 STEP_ROUNDING = 1e-6  # fraction of a time step
@@ -34,18 +34,20 @@ class Frame(NamedTuple):
     basis: Float[Array, "p q"]
 
 
-@eqx.filter_jit
-def decay_residuals(problem: DecayProblem, x: Float[Array, " p"], own: Float[Array, "r o"]) -> Float[Array, "r c t"]:
-    """Simulated minus measured motions of decays, zero where there is no sample (r, c, t)."""
-    return jax.lax.map(lambda one: problem.residual(x, *one), (own, problem.data))
+@jit_once
+def decay_residual(
+    problem: DecayProblem, x: Float[Array, " p"], own: Float[Array, " o"], record: DecayData
+) -> Float[Array, "c t"]:
+    """Simulated minus measured motions of a decay, zero where there is no sample (c, t)."""
+    return problem.residual(x, own, record)
 
 
-@eqx.filter_jit
+@jit_once
 def decay_slopes(
-    problem: DecayProblem, frame: Frame, own: Float[Array, "r o"]
-) -> tuple[Float[Array, "r c t"], Float[Array, "r c t k"]]:
-    """Residuals of decays (r, c, t), and slopes along directions and own unknowns (r, c, t, k)."""
-    return jax.lax.map(lambda one: problem.slopes(frame.origin, one[0], one[1], frame.basis), (own, problem.data))
+    problem: DecayProblem, frame: Frame, own: Float[Array, " o"], record: DecayData
+) -> tuple[Float[Array, "c t"], Float[Array, "c t k"]]:
+    """Residual of a decay (c, t), and slopes along directions and own unknowns (c, t, k)."""
+    return problem.slopes(frame.origin, own, record, frame.basis)
 
 
 class SeaRecord(eqx.Module):
@@ -81,16 +83,19 @@ class SeaRecord(eqx.Module):
     tests: tuple[str, ...] = eqx.field(static=True)
     slow: float = eqx.field(static=True)
 
+    def begin(self, x: Float[Array, " p"]) -> tuple[Model, State]:
+        """The model with these parameters, and its equilibrium."""
+        model = self.space.model(self.model, x)
+        return model, State(equilibrium(model), jnp.zeros(6), model.rest().memory)
+
     def simulated(self, x: Float[Array, " p"], count: Int[Array, ""] | None = None) -> tuple[Model, Float[Array, "6"], Grid]:
         """The model with these parameters, its equilibrium, and its motion over `count` steps or all."""
-        model = self.space.model(self.model, x)
-        rest = equilibrium(model)
-        start = State(rest, jnp.zeros(6), model.rest().memory)
-        return model, rest, integrate(model, self.sea, start, self.times[0], self.step, self.steps, "ab4", count=count)
+        model, start = self.begin(x)
+        grid = integrate(model, self.sea, start, self.times[0], self.step, self.steps, "ab4", count=count)
+        return model, start.position, grid
 
-    def residual(self, x: Float[Array, " p"], count: Int[Array, ""]) -> Float[Array, "w c n"]:
+    def compared(self, model: Model, rest: Float[Array, "6"], grid: Grid, count: Int[Array, ""]) -> Float[Array, "w c n"]:
         """Simulated minus measured motions by test; zeros of tests that have not ended after `count` steps."""
-        model, rest, grid = self.simulated(x, count)
         motion = observe(model, grid, self.times, rest if self.from_rest else None, in_waves=True)
         n = self.measured.shape[-1]
         found = jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins]) - self.measured
@@ -98,19 +103,7 @@ class SeaRecord(eqx.Module):
         return jnp.where(ended[:, None, None], found, 0.0)
 
 
-@eqx.filter_jit
+@jit_once
 def sea_residuals(record: SeaRecord, x: Float[Array, " p"], count: Int[Array, ""]) -> Float[Array, "w c n"]:
     """Simulated minus measured motions by test, over `count` steps (w, c, n)."""
-    return record.residual(x, count)
-
-
-@eqx.filter_jit
-def sea_slopes(record: SeaRecord, frame: Frame, count: Int[Array, ""]) -> tuple[Float[Array, "w c n"], Any]:
-    """Residuals over `count` steps (w, c, n), and slopes along the directions (w, c, n, q)."""
-
-    def residual(z):
-        r = record.residual(frame.origin + frame.basis @ z, count)
-        return r, r
-
-    slopes, r = jax.jacfwd(residual, has_aux=True)(jnp.zeros(frame.basis.shape[1]))
-    return r, slopes
+    return record.compared(*record.simulated(x, count), count)

@@ -30,7 +30,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.loads import MooringLines
 
-DIRECTIONS_AT_ONCE = 64  # directions differentiated at a time: few cost nearly as much as many
+DIRECTIONS_AT_ONCE = 128  # directions differentiated at a time: few cost nearly as much as many
 PLAUSIBLE_DEVIATIONS = 2.0  # prior standard deviations from a neutral value to the further end of its plausible range
 TERMS = ("linear_damping.", "quadratic_damping.", "stiffness.", "added_mass.")  # that are candidates where they are zero
 MASS = "mass_properties.mass"

@@ -7,17 +7,19 @@ from functools import cached_property, reduce
 from itertools import pairwise
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.records import Record
 from calibration.discovery.frequency_bands import FourierRows, step_of
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, SeaSelection
-from calibration.discovery.residuals import Frame, SeaRecord, decay_residuals, decay_slopes, sea_residuals, sea_slopes
+from calibration.discovery.residuals import Frame, SeaRecord, decay_residual, decay_slopes, sea_residuals
+from calibration.discovery.sea_slopes import sea_slopes
 from calibration.fitting.cores import cores
 from calibration.parameters.space import ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
-from calibration.residuals.decays import DecayProblem
+from calibration.residuals.decays import DecayData, DecayProblem
 from calibration.residuals.moving_channels import moving
 from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.model import Model
@@ -216,32 +218,41 @@ class Study:
         uses = {one.test: one.use for one in self.series}
         return [seas == "all" or any(uses[test] == "fit" for test in record.tests) for record in self.seas]
 
-    def _steps(self, record: SeaRecord, seas: SeaSelection) -> Any:
+    def _steps(self, record: SeaRecord, seas: SeaSelection) -> int:
         """Number of steps that a run is simulated for."""
-        return jnp.asarray(record.steps if seas == "all" else record.fitted)
+        return record.steps if seas == "all" else record.fitted
 
     def motions(self, place: Point, seas: SeaSelection = "all") -> list[np.ndarray | None]:
         """Simulated minus measured motions in time (s, t), of the decays and of every run in waves."""
         x = jnp.asarray(place.x)
 
-        def of_decays() -> np.ndarray:
+        def of_decay(i: int) -> np.ndarray:
             assert self.decays is not None
-            motions = np.asarray(decay_residuals(self.decays, x, jnp.asarray(place.own)))
-            return motions.reshape(-1, motions.shape[-1])
+            return np.asarray(decay_residual(self.decays, x, jnp.asarray(place.own[i]), self.decay_data[i]))
 
         def of_sea(record: SeaRecord) -> np.ndarray:
-            motions = np.asarray(sea_residuals(record, x, self._steps(record, seas)))
+            motions = np.asarray(sea_residuals(record, x, jnp.asarray(self._steps(record, seas))))
             return motions.reshape(-1, record.measured.shape[-1])
 
         with stoppable_threads(cores()) as pool:
-            return [None if job is None else job.result() for job in self._parts(pool, of_decays, of_sea, seas)]
+            decays, found = self._jobs(pool, of_decay, of_sea, seas)
+            first = [np.concatenate([job.result() for job in decays])] if decays else []
+            return [*first, *(None if job is None else job.result() for job in found)]
 
-    def _parts(
-        self, pool: Executor, decays: Callable[[], Any], sea: Callable[[SeaRecord], Any], seas: SeaSelection
-    ) -> list[Any]:
+    @cached_property
+    def decay_data(self) -> list[DecayData]:
+        """The decays one by one."""
+        if self.decays is None:
+            return []
+        leaves, kind = jax.tree.flatten(self.decays.data)
+        return [jax.tree.unflatten(kind, some) for some in zip(*leaves, strict=True)]
+
+    def _jobs(
+        self, pool: Executor, decay: Callable[[int], Any], sea: Callable[[SeaRecord], Any], seas: SeaSelection
+    ) -> tuple[list[Any], list[Any]]:
         """Parallel work on decays and runs in waves (XLA runs a loop on one core); None: not simulated."""
-        jobs: list[Any] = [pool.submit(decays)] if self.decays is not None else []
-        return jobs + [pool.submit(sea, one) if seen else None for one, seen in zip(self.seas, self.selected_seas(seas))]
+        in_seas = [pool.submit(sea, one) if seen else None for one, seen in zip(self.seas, self.selected_seas(seas))]
+        return [pool.submit(decay, i) for i in range(len(self.decay_records))], in_seas
 
     def residual(self, place: Point, seas: SeaSelection = "fit") -> np.ndarray:
         """Residual at a point in rows (n,); zeros of runs that are not simulated."""
@@ -255,13 +266,13 @@ class Study:
     def linearise_all(self, jobs: Sequence[tuple[Point, Sequence[int]]], seas: SeaSelection = "fit") -> list[Linearisation]:
         """Residual and slopes at several points along some directions each, side by side."""
         linearisations: list[Linearisation] = []
-        with stoppable_threads(cores()) as pool:
-            begun = [[(mine, self._slopes(pool, place, mine, seas)) for mine in self._chunks(active)] for place, active in jobs]
+        with stoppable_threads(cores()) as pool, stoppable_threads(cores()) as workers:
+            begun = [
+                [(mine, self._slopes(pool, workers, place, mine, seas)) for mine in self._chunks(active)]
+                for place, active in jobs
+            ]
             for (place, _), chunks in zip(jobs, begun, strict=True):
-                looks = [
-                    self._linearisation(place, mine, [None if job is None else job.result() for job in parts])
-                    for mine, parts in chunks
-                ]
+                looks = [self._linearisation(place, mine, parts()) for mine, parts in chunks]
                 linearisations.append(reduce(Linearisation.joined_with, looks))
         return linearisations
 
@@ -275,9 +286,9 @@ class Study:
         The decays' have their own unknowns' after them (s, t, q + o). Slopes that overflow are zero, as in `linearise`.
         """
         some = self._chunks(active)
-        with stoppable_threads(cores()) as pool:
-            jobs = [self._slopes(pool, place, mine, "all") for mine in some]
-            found = [[job.result()[1] for job in one] for one in jobs]
+        with stoppable_threads(cores()) as pool, stoppable_threads(cores()) as workers:
+            jobs = [self._slopes(pool, workers, place, mine, "all") for mine in some]
+            found = [[part[1] for part in parts() if part is not None] for parts in jobs]
         whole = []
         for i, parts in enumerate(zip(*found, strict=True)):
             columns = [part[..., : len(mine)] for part, mine in zip(parts, some, strict=True)]
@@ -287,21 +298,37 @@ class Study:
             whole.append(slopes)
         return whole
 
-    def _slopes(self, pool: Executor, place: Point, active: tuple[int, ...], seas: SeaSelection = "fit") -> list[Any]:
-        """Work on residual and slopes at a point, along at most `width` directions."""
+    def _slopes(
+        self, pool: Executor, workers: Executor, place: Point, active: tuple[int, ...], seas: SeaSelection = "fit"
+    ) -> Callable[[], list[tuple[np.ndarray, np.ndarray] | None]]:
+        """Begin work on residual and slopes at a point, along at most `width` directions.
+
+        Returns:
+            What waits for residual (s, t) and slopes (s, t, q) of the decays and of every run in waves; None: not simulated.
+        """
         basis = np.zeros((len(place.x), self.width))
         basis[:, : len(active)] = self.directions[list(active)].T
-        frame, own = Frame(jnp.asarray(place.x), jnp.asarray(basis)), jnp.asarray(place.own)
+        frame = Frame(jnp.asarray(place.x), jnp.asarray(basis))
 
         def flat(parts: Any) -> tuple[np.ndarray, np.ndarray]:
             residual, slopes = (np.asarray(one) for one in parts)
             return residual.reshape(-1, residual.shape[-1]), slopes.reshape(-1, *slopes.shape[-2:])
 
-        def of_decays() -> tuple[np.ndarray, np.ndarray]:
+        def of_decay(i: int) -> tuple[np.ndarray, np.ndarray]:
             assert self.decays is not None
-            return flat(decay_slopes(self.decays, frame, own))
+            return flat(decay_slopes(self.decays, frame, jnp.asarray(place.own[i]), self.decay_data[i]))
 
-        return self._parts(pool, of_decays, lambda one: flat(sea_slopes(one, frame, self._steps(one, seas))), seas)
+        def of_sea(one: SeaRecord) -> tuple[np.ndarray, np.ndarray]:
+            return flat(sea_slopes(one, frame, self._steps(one, seas), len(active), workers))
+
+        decays, in_seas = self._jobs(pool, of_decay, of_sea, seas)
+
+        def found() -> list[tuple[np.ndarray, np.ndarray] | None]:
+            each = [job.result() for job in decays]
+            first = [(np.concatenate([r for r, _ in each]), np.concatenate([s for _, s in each]))] if each else []
+            return [*first, *(None if job is None else job.result() for job in in_seas)]
+
+        return found
 
     def _linearisation(
         self, place: Point, active: tuple[int, ...], parts: Sequence[tuple[np.ndarray, np.ndarray] | None]

@@ -66,7 +66,7 @@ class Grid(eqx.Module):
         return x, v, a
 
 
-def _rate_of(unravel: Callable[[Array], State], precision: Precision = "double") -> runge_kutta.Rate:
+def rate_of(unravel: Callable[[Array], State], precision: Precision = "double") -> runge_kutta.Rate:
     """The equation of motion of states in one array."""
 
     @eqx.filter_jit  # traced once, not by every stage and derivative
@@ -86,7 +86,7 @@ def _by_loop(
     run: Any = loop.forward if adjoint == "forward" else loop.backward
     if adjoint == "forward":
         options["shown"] = MOTION_SIZE
-    path = run((model, sea), y, start, step, count, rate=_rate_of(unravel, precision), capacity=capacity, **options)
+    path = run((model, sea), y, start, step, count, rate=rate_of(unravel, precision), capacity=capacity, **options)
     return path[:, :6], path[:, 6:MOTION_SIZE]
 
 
@@ -98,7 +98,7 @@ def _by_kernel(
 
     y, unravel = ravel_pytree(state)
     options: dict[str, Any] = {"capacity": capacity, "shown": MOTION_SIZE, "interpret": kernel == "interpreted"}
-    path = kernel_loop.march((model, sea), y, start, step, rate=_rate_of(unravel, precision), **options)
+    path = kernel_loop.march((model, sea), y, start, step, rate=rate_of(unravel, precision), **options)
     return path[:, :6], path[:, 6:MOTION_SIZE]
 
 
@@ -163,6 +163,11 @@ def integrate(
     run = _by_diffrax if method == "diffrax" else partial(_by_loop, method)
     run = run if kernel == "off" else partial(_by_kernel, kernel)
     position, velocity = run(model, sea, state, start, step, count + EXTRA_STEPS, capacity + EXTRA_STEPS, adjoint, precision)
+    return grid_of(model, position, velocity, start, step, count)
+
+
+def grid_of(model: Model, position: Array, velocity: Array, start: Array, step: Array, count: Array) -> Grid:
+    """Motion at the ends of all steps, from positions and body velocities there (n, 6)."""
     rate = jax.vmap(model.position_rate)(position, velocity)
     return Grid(start, step, count, position, rate, differences(rate, step))
 
@@ -172,7 +177,7 @@ def states(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""]
     """States, memories included, after 0, 1 ... `count` steps of four-step Adams-Bashforth, stacked."""
     y, unravel = ravel_pytree(state)
     path = adams_bashforth.forward(
-        (model, sea), y, start, step, jnp.asarray(count), rate=_rate_of(unravel), capacity=count, shown=y.shape[0]
+        (model, sea), y, start, step, jnp.asarray(count), rate=rate_of(unravel), capacity=count, shown=y.shape[0]
     )
     return jax.vmap(unravel)(path)
 

@@ -6,7 +6,7 @@ needs half the evaluations of any Runge-Kutta scheme of that order.
 References: Hairer, Norsett and Wanner (1993), Solving Ordinary Differential Equations I, section III.1, eq. (1.5).
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -123,6 +123,45 @@ def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool,
     return path, taken
 
 
+class Tangent(NamedTuple):
+    """Slope of a simulation along one direction, between two evaluations.
+
+    Attributes:
+        y: Of the state (s,).
+        slopes: Of the remembered slopes (m, s), each at its evaluation's number modulo m.
+    """
+
+    y: Float[Array, " s"]
+    slopes: Float[Array, "m s"]
+
+    @classmethod
+    def begin(cls, y: Float[Array, " s"]) -> "Tangent":
+        """Before the first evaluation, from the slope of the first state."""
+        return cls(y, jnp.zeros((STORED_SLOPES, *y.shape)))
+
+    def after(
+        self, index: Int[Array, ""], slope: Float[Array, "s s"], push: Float[Array, " s"], step: Float[Array, ""]
+    ) -> "Tangent":
+        """After an evaluation.
+
+        Args:
+            index: Number of the evaluation.
+            slope: Slopes of the right-hand side by the state there.
+            push: Its slope along the direction of the driver.
+            step: Time step (s).
+        """
+        row = jnp.minimum(index, len(ROWS.time) - 1)
+
+        def back(slopes: Array, ago: Array) -> Array:
+            return jax.lax.dynamic_index_in_dim(slopes, (index - ago) % STORED_SLOPES, 0, keepdims=False)
+
+        (last,), (weight,) = jnp.array(ROWS.at_back)[row], jnp.array(ROWS.at_weight)[row]
+        new = slope @ (self.y + step * weight * back(self.slopes, last)) + push
+        slopes = jax.lax.dynamic_update_index_in_dim(self.slopes, new, index % STORED_SLOPES, 0)
+        some, weights = jnp.array(ROWS.add_back)[row], jnp.array(ROWS.add_weight)[row]
+        return Tangent(self.y + step * sum(weights[k] * back(slopes, some[k]) for k in range(len(some))), slopes)
+
+
 @eqx.filter_custom_jvp
 def forward(
     driver: Any,
@@ -139,6 +178,11 @@ def forward(
     return _march(driver, y, start, step, count, rate, capacity, False, shown)[0]
 
 
+def times_of(index: Int[Array, " m"], start: Float[Array, ""], step: Float[Array, ""]) -> Float[Array, " m"]:
+    """Times (s) of evaluations."""
+    return start + step * jax.vmap(_row)(index)[2]
+
+
 @forward.def_jvp
 def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int, shown: int):
     """Tangents by linearisation at all evaluations, several at once, and the scheme applied to them."""
@@ -150,30 +194,40 @@ def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int, shown: int):
     taken = jnp.pad(taken, ((0, batches * BATCH - taken.shape[0]), (0, 0)))
 
     def advance(carry, now):
-        index, slope, push = now
-        d_y, slopes, found = carry
+        tangent, found = carry
+        index = now[0]
         row = jnp.minimum(index, len(ROWS.time) - 1)
-        found = jax.lax.dynamic_update_index_in_dim(found, d_y[:shown], _row(index)[3] + index - row, 0)
-
-        def back(ago):
-            return jax.lax.dynamic_index_in_dim(slopes, (index - ago) % STORED_SLOPES, 0, keepdims=False)
-
-        (last,), (weight,) = jnp.array(ROWS.at_back)[row], jnp.array(ROWS.at_weight)[row]
-        new = slope @ (d_y + step * weight * back(last)) + push
-        slopes = jax.lax.dynamic_update_index_in_dim(slopes, new, index % STORED_SLOPES, 0)
-        some, weights = jnp.array(ROWS.add_back)[row], jnp.array(ROWS.add_weight)[row]
-        return (d_y + step * sum(weights[k] * back(some[k]) for k in range(len(some))), slopes, found), None
+        found = jax.lax.dynamic_update_index_in_dim(found, tangent.y[:shown], _row(index)[3] + index - row, 0)
+        return (tangent.after(*now, step), found), None
 
     def batch(block, carry):
         index = block * BATCH + jnp.arange(BATCH)
-        _, _, time, _ = jax.vmap(_row)(index)
         states = jax.lax.dynamic_slice_in_dim(taken, block * BATCH, BATCH)
-        return jax.lax.scan(advance, carry, (index, *jax.vmap(at)(start + step * time, states)))[0]
+        return jax.lax.scan(advance, carry, (index, *jax.vmap(at)(times_of(index, start, step), states)))[0]
 
-    d_y = jnp.zeros_like(y) if d_y is None else d_y
-    carry = d_y, jnp.zeros((STORED_SLOPES, *y.shape)), jnp.zeros((capacity + 1 + BATCH, shown))
-    _, _, found = jax.lax.fori_loop(0, (evaluations(count + 1) + BATCH - 1) // BATCH, batch, carry)
+    carry = Tangent.begin(jnp.zeros_like(y) if d_y is None else d_y), jnp.zeros((capacity + 1 + BATCH, shown))
+    _, found = jax.lax.fori_loop(0, (evaluations(count + 1) + BATCH - 1) // BATCH, batch, carry)
     return path, found[: capacity + 1]
+
+
+def path_and_states(
+    driver: Any,
+    y: Float[Array, " s"],
+    start: Float[Array, ""],
+    step: Float[Array, ""],
+    count: Int[Array, ""],
+    *,
+    rate: Rate,
+    capacity: int,
+    shown: int,
+) -> tuple[Float[Array, "n m"], Float[Array, "e s"]]:
+    """States after 0, 1 ... `count` steps, as `forward`, and those at which the right-hand side was evaluated."""
+    return _march(driver, y, start, step, count, rate, capacity, True, shown)
+
+
+def first_evaluations(steps: int) -> np.ndarray:
+    """Numbers of the evaluations at the beginnings of steps (n,)."""
+    return np.concatenate([4 * np.arange(START_STEPS), np.arange(4 * START_STEPS, evaluations(steps))])[:steps]
 
 
 def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Float[Array, "n s"]:
@@ -190,5 +244,4 @@ def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Flo
     index = jnp.arange(blocks * CHECKPOINT_STEPS).reshape(blocks, CHECKPOINT_STEPS)
     carry = (y, jnp.zeros((STORED_SLOPES, y.shape[0])))
     _, saved = jax.lax.scan(jax.checkpoint(lambda c, i: jax.lax.scan(advance, c, i)), carry, index)
-    first = np.concatenate([4 * np.arange(START_STEPS), np.arange(4 * START_STEPS, total)])
-    return saved.reshape(-1, y.shape[0])[first]
+    return saved.reshape(-1, y.shape[0])[first_evaluations(capacity + 1)]

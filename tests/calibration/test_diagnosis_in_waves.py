@@ -3,9 +3,12 @@
 import dataclasses
 import json
 import re
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import MappingProxyType
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -20,6 +23,8 @@ from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis_conclusion import conclude
 from calibration.discovery.effects.phase_shift_start import PHASE_SPACING, phase_shift_start
 from calibration.discovery.linearisations import Point
+from calibration.discovery.residuals import Frame
+from calibration.discovery.sea_slopes import sea_slopes
 from calibration.discovery.search import Search
 from calibration.discovery.set_up import set_up_study
 from calibration.report.write_report import write_report
@@ -309,7 +314,7 @@ def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     """Of one run with two tests, the second held out: all that is fitted as of the whole run, and zeros of what is not; the
-    same however many directions are looked along at a time."""
+    same however many directions are looked along at a time, in however many segments."""
     campaign = campaign_of(tmp_path, pressure)
     manifest = json.loads((tmp_path / "campaign.yaml").read_text())
     sea = {"kind": "irregular", "file": "sea-0.csv", "transient": TRANSIENT, "peak_period": 9.7}
@@ -323,6 +328,18 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     every, some, fitted = study.residual(place, "all"), study.residual(place), study.used[study.row_series]
     assert_allclose(some[fitted], every[fitted], rtol=0, atol=1e-12)
     assert np.abs(every[~fitted]).max() > 1e-3 and not some[~fitted].any()
+    # slopes by segments on several cores are those of the whole simulation
+    count, basis = record.fitted, jnp.asarray(study.directions[::7].T)
+    weights, x = jnp.linspace(-1.0, 1.0, basis.shape[1]), jnp.asarray(place.x)
+    with ThreadPoolExecutor(2) as pool:
+        residual, slopes = sea_slopes(record, Frame(x, basis), count, basis.shape[1], pool)
+
+    def compared(x):
+        return record.compared(*record.simulated(x, jnp.asarray(count)), jnp.asarray(count))
+
+    exact, along = jax.jit(lambda x: jax.jvp(compared, (x,), (basis @ weights,)))(x)
+    assert_allclose(residual, exact, rtol=0, atol=1e-12)
+    assert_allclose(slopes @ weights, along, rtol=0, atol=1e-9 * np.abs(slopes).max())
     active = range(len(study.names) - 3)
     looks = [dataclasses.replace(study, width=width).linearise(place, active) for width in (16, study.width)]
     assert_allclose(looks[0].residual, some, rtol=0, atol=1e-12)

@@ -1,0 +1,178 @@
+"""Residuals of a run in waves, and their slopes along many directions, on all cores.
+
+XLA runs a loop on one core. The motion is simulated first. Then the right-hand side is linearised at the states that the scheme
+evaluated, which takes most of the time: in segments, side by side. The scheme itself is applied to the slopes in order.
+"""
+
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import Executor, Future
+from operator import itemgetter
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.flatten_util import ravel_pytree
+from jaxtyping import Array, Float, Int
+
+from calibration.discovery.residuals import Frame, SeaRecord
+from calibration.fitting.cores import cores
+from jaxhydro.dynamics.integrate import EXTRA_STEPS, MOTION_SIZE, grid_of, rate_of
+from jaxhydro.dynamics.model import Model
+from jaxhydro.integrators.adams_bashforth import (
+    Tangent,
+    evaluations,
+    first_evaluations,
+    path_and_states,
+    times_of,
+)
+from jaxhydro.integrators.linearised_rate import linearised_rate
+from jaxhydro.quick_jit import jit_once, quick_jit
+
+LINEARISED_AT_ONCE = 16  # evaluations, one after the other in a segment: their flow fills the cache
+SEGMENT = 32 * LINEARISED_AT_ONCE  # evaluations that are linearised by one core
+SEGMENTS_AHEAD = 2  # of every core: linearisations take memory until the scheme has used them
+COMPARED_AT_ONCE = 16  # directions along which slopes become those of the residual together
+
+
+class _Begin(NamedTuple):
+    """What a simulation begins with, and how it moves along the directions.
+
+    Attributes:
+        model: The model.
+        state: Its first state (s,).
+        d_model: Slopes of the model, (q, ...) each; None of what does not move.
+        d_state: Slopes of the first state (q, s).
+    """
+
+    model: Model
+    state: Float[Array, " s"]
+    d_model: Any
+    d_state: Float[Array, "q s"]
+
+
+def sea_slopes(
+    record: SeaRecord, frame: Frame, count: int, directions: int, pool: Executor
+) -> tuple[Float[np.ndarray, "w c n"], Float[np.ndarray, "w c n q"]]:
+    """Residuals over some steps, and slopes along the directions; zeros of the directions that are not asked for.
+
+    Args:
+        record: The run.
+        frame: Where, and the directions (q).
+        count: Number of steps.
+        directions: How many of the directions, from the first on.
+        pool: Threads for the segments.
+    """
+    steps, width = jnp.asarray(count), frame.basis.shape[1]
+    begin = _begin(record, frame)
+    path, states = _simulated(record, begin.model, begin.state, steps)
+    needed = -(-int(evaluations(count + EXTRA_STEPS + 1)) // SEGMENT)
+    tangent, found = jax.vmap(Tangent.begin)(begin.d_state), []
+    for i, (slope, push) in enumerate(_segments(record, begin, states, needed, pool)):
+        tangent, some = _followed(tangent, jnp.asarray(i * SEGMENT), slope, push, record.step)
+        found.append(np.asarray(some))
+    rows = first_evaluations(needed * SEGMENT - evaluations(0))[: len(path)]
+    residual: Any = None
+    slopes = np.zeros((*record.measured.shape, width))
+    for first in range(0, max(directions, 1), COMPARED_AT_ONCE):
+        mine = np.arange(first, first + COMPARED_AT_ONCE) % width  # always as many: one program
+        along = np.zeros((COMPARED_AT_ONCE, *path.shape))
+        along[:, : len(rows)] = np.moveaxis(np.concatenate([part[:, mine] for part in found])[rows], 0, 1)
+        few = begin._replace(d_model=jax.tree.map(itemgetter(mine), begin.d_model), d_state=begin.d_state[mine])
+        residual, some = _compared(record, few, path, jnp.asarray(along), steps)
+        slopes[..., mine] = np.asarray(some)
+    return np.asarray(residual), slopes
+
+
+def _segments(
+    record: SeaRecord, begin: _Begin, states: Float[Array, "e s"], count: int, pool: Executor
+) -> Iterator[tuple[Array, Array]]:
+    """Linearisations of the first segments in order, some of them computed ahead."""
+    ahead: deque[Future[tuple[Array, Array]]] = deque()
+    for i in range(count):
+        ahead.append(pool.submit(_linearised, record, begin, states, jnp.asarray(i * SEGMENT)))
+        if len(ahead) > SEGMENTS_AHEAD * cores():
+            yield ahead.popleft().result()
+    while ahead:
+        yield ahead.popleft().result()
+
+
+@quick_jit
+def _begin(record: SeaRecord, frame: Frame) -> _Begin:
+    """Model and first state, and their slopes along the directions."""
+
+    def at(z: Float[Array, " q"]) -> tuple[Any, Array]:
+        model, state = record.begin(frame.origin + frame.basis @ z)
+        moves = jax.tree.map(lambda new, old: eqx.is_array(new) and new is not old, model, record.model)
+        return eqx.filter(model, moves), ravel_pytree(state)[0]
+
+    model, state = record.begin(frame.origin)
+    slopes = jax.jacfwd(at)(jnp.zeros(frame.basis.shape[1]))
+    return _Begin(model, ravel_pytree(state)[0], *jax.tree.map(lambda x: jnp.moveaxis(x, -1, 0), slopes))
+
+
+@jit_once
+def _simulated(
+    record: SeaRecord, model: Model, state: Float[Array, " s"], count: Int[Array, ""]
+) -> tuple[Float[Array, "n m"], Float[Array, "e s"]]:
+    """Motion at the ends of the steps, and the states at which the right-hand side was evaluated, in whole segments."""
+    _, unravel = ravel_pytree(model.rest())
+    clock = (record.times[0], record.step, count + EXTRA_STEPS)
+    options: dict[str, Any] = {"rate": rate_of(unravel), "capacity": record.steps + EXTRA_STEPS, "shown": MOTION_SIZE}
+    path, states = path_and_states((model, record.sea), state, *clock, **options)
+    return path, jnp.pad(states, ((0, -len(states) % SEGMENT), (0, 0)), mode="edge")
+
+
+@jit_once
+def _linearised(
+    record: SeaRecord, begin: _Begin, states: Float[Array, "e s"], first: Int[Array, ""]
+) -> tuple[Float[Array, "e s s"], Float[Array, "e q s"]]:
+    """Slopes of the right-hand side at the evaluations of a segment, by the state and along the directions."""
+    _, unravel = ravel_pytree(begin.model.rest())
+    still = jax.tree.map(lambda _: None, record.sea)
+
+    def at(now: tuple[Array, Array]) -> tuple[Array, Array]:
+        def along(d_model: Any) -> tuple[Array, Array]:
+            return linearised_rate(rate_of(unravel), (begin.model, record.sea), (d_model, still))(*now)
+
+        return jax.vmap(along, out_axes=(None, 0))(begin.d_model)
+
+    times = times_of(first + jnp.arange(SEGMENT), record.times[0], record.step)
+    mine = jax.lax.dynamic_slice_in_dim(states, first, SEGMENT)
+    return jax.lax.map(at, (times, mine), batch_size=LINEARISED_AT_ONCE)
+
+
+@jit_once
+def _followed(
+    tangent: Tangent,
+    first: Int[Array, ""],
+    slope: Float[Array, "e s s"],
+    push: Float[Array, "e q s"],
+    step: Float[Array, ""],
+) -> tuple[Tangent, Float[Array, "e q m"]]:
+    """Slopes of a simulation after some evaluations, and those of its motion before each."""
+
+    def after(tangent: Tangent, now: tuple[Array, Array, Array]) -> tuple[Tangent, Array]:
+        index, slope, push = now
+        return jax.vmap(lambda one, push: one.after(index, slope, push, step))(tangent, push), tangent.y[:, :MOTION_SIZE]
+
+    return jax.lax.scan(after, tangent, (first + jnp.arange(len(slope)), slope, push))
+
+
+@jit_once
+def _compared(
+    record: SeaRecord, begin: _Begin, path: Float[Array, "n m"], along: Float[Array, "q n m"], count: Int[Array, ""]
+) -> tuple[Float[Array, "w c n"], Float[Array, "w c n q"]]:
+    """Residuals over `count` steps, and their slopes from those of the motion."""
+    moves = jax.tree.map(lambda slope: slope is not None, begin.d_model, is_leaf=lambda leaf: leaf is None)
+    moved, still = eqx.partition(begin.model, moves)
+
+    def residual(moved: Any, rest: Float[Array, "6"], path: Float[Array, "n m"]) -> Float[Array, "w c n"]:
+        model = eqx.combine(moved, still)
+        grid = grid_of(model, path[:, :6], path[:, 6:], record.times[0], record.step, count)
+        return record.compared(model, rest, grid, count)
+
+    found, slope = jax.linearize(residual, moved, begin.state[:6], path)
+    return found, jax.vmap(slope, out_axes=-1)(begin.d_model, begin.d_state[:, :6], along)
