@@ -12,7 +12,7 @@ from calibration.discovery.channel_signs import reversal_note, reversed_channels
 from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.discovery.diagnosis_conclusion import conclude, unexplained_motions
-from calibration.discovery.doubts import abandoned_decays
+from calibration.discovery.doubts import abandoned_decays, worsened_motions
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.fit_state import FitState
 from calibration.discovery.residual_anatomy import anatomy
@@ -101,7 +101,8 @@ def diagnose(
         lost = [] if search.alone is None else abandoned_decays(search.study, search.alone, states[-1].left)
         unknown = [] if campaign.manifest.zero is not None else [UNKNOWN_ZERO_NOTE]
         warnings = [str(finding) for finding in group_findings(campaign.findings)]
-        every = (*signs, *search.study.notes, *search.notes, *lost, *unknown, *warnings)
+        worse = worsened_motions(search.study, states[0].left, states[-1].left)
+        every = (*signs, *search.study.notes, *search.notes, *lost, *worse, *unknown, *warnings)
         return conclude(campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 
     try:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from calibration.discovery.acceptance import worsening
 from calibration.discovery.diagnosis import Finding
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
@@ -62,6 +63,25 @@ def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary)
                     f"{percent(before)} where decays are fitted alone. The model cannot follow both, and what is said of "
                     f"{one.channel} is in doubt"
                 )
+    return said
+
+
+def worsened_motions(study: Study, declared: ResidualSummary, now: ResidualSummary) -> list[str]:
+    """Motions that the model with all effects follows worse than the declared one, in words.
+
+    Args:
+        study: The study.
+        declared: Residual of the fitted declared model.
+        now: Residual of the model with the effects.
+    """
+    said = []
+    for i in np.flatnonzero(worsening(study, declared, now) > 1):
+        one = study.series[i]
+        before, after = (percent(float(some.error[i]) / one.spread) for some in (declared, now))
+        said.append(
+            f"{one.channel} of {one.test} is followed worse than by the declared model: {after} of the motion is left, "
+            f"{before} before"
+        )
     return said
 
 

@@ -25,7 +25,13 @@ from calibration.discovery.broyden_fit import fit
 from calibration.discovery.checkpoint import _packed, _rebuilt
 from calibration.discovery.diagnosis import Finding, Rejected, Score
 from calibration.discovery.diagnosis_conclusion import unexplained_motions
-from calibration.discovery.doubts import doubted_effects, moving_release_notes, outdone_effects, unexplained_note
+from calibration.discovery.doubts import (
+    doubted_effects,
+    moving_release_notes,
+    outdone_effects,
+    unexplained_note,
+    worsened_motions,
+)
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, symmetric_inverse
 from calibration.discovery.fit_state import ResidualSummary
@@ -289,6 +295,12 @@ def test_what_is_followed_worse_is_counted_in_what_matters():
     assert_allclose(found, [0.06 / (MIN_MOTION_SHARE * 2.0), 1.0, -0.1 / MIN_MOTION_SHARE])
     quiet = SimpleNamespace(series=study.series, main=np.array([False, True, True]))
     assert worsening(quiet, left([1, 1, 1], [0, 0, 0]), left([1, 1, 1], [9, 0, 0]))[0] == 0
+
+
+def test_what_is_followed_worse_at_the_end_is_told():
+    study = study_of(series("surge", 0.01), series("surge", 0.01), series("surge", 0.01))
+    (said,) = worsened_motions(study, left([1, 1, 1], [0.2, 0.2, 0.2]), left([1, 1, 1], [0.1, 0.3, 0.201]))
+    assert said.startswith("surge of ") and "30 % of the motion is left, 20 % before" in said
 
 
 @pytest.mark.parametrize(("worse", "refused"), [(0.5, "drift"), (0.1, None)])
