@@ -50,7 +50,7 @@ def words(loads: dict[str, Any], motions: dict[str, Any], seas: dict[str, Any], 
     ours, theirs = motions["ss1_c3"]["ours"], motions["ss1_c3"]["theirs"]
     stretched = largest("whole", "surge", ("free_comp_c3", "ss1_c3", "ss1_c4"))
     return (
-        "OpenFAST v5.0.0 and this package have the same strips. The waves are five components (`comp`), or one of two JONSWAP seas: "
+        "OpenFAST v5.0.0 and this package have the same strips. The waves are five components (`comp`) or a JONSWAP sea: "
         "ss1 (Hs 3.1 m, Tp 8.96 s) and ss2 (Hs 8.1 m, Tp 12.8 s). The cases are:\n\n"
         "- c1: first order\n"
         "- c2: second order\n"
