@@ -156,8 +156,8 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
         f"pitch's resonance, {RESONANCE} Hz, the model's reference point moves {base['arm']:+.1f} m per rad of pitch. The "
         f"measured point moves {arms[0]} m in the three seas, and {arms[1]} m of sway per rad of roll (coherence "
         f"{least:.2f} or more). Both say some 20 m lower. Heave as recorded also reads {KEEL} m in still water. "
-        f"Surge of potential flow at that height has {read} of the measured amplitude at 0.08, 0.10 and 0.12 Hz. The rows *at the keel* are simulated "
-        "surge at that height, all others as the manifest has it. At the keel errors in surge become "
+        f"Surge of potential flow at that height has {read} of the measured amplitude at 0.08, 0.10 and 0.12 Hz. "
+        "The rows *at the keel* are simulated surge at that height, all others as the manifest has it. At the keel errors in surge become "
         f"{keel['tuned'][BANDS[0]]} (low) and {keel['tuned'][BANDS[1]]} (wave). With {FITTED}'s coefficients they become "
         f"{keel['fitted'][BANDS[0]]} and {keel['fitted'][BANDS[1]]}.",
         "- **The wave-frequency motion is too small, by much the same factor in every sea.** Errors of energy: surge "
