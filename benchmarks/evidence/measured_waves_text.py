@@ -157,13 +157,14 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
         f"measured point moves {arms[0]} m in the three seas, and {arms[1]} m of sway per rad of roll (coherence "
         f"{least:.2f} or more). Both say some 20 m lower. Heave as recorded also reads {KEEL} m in still water. "
         f"Surge of potential flow at that height has {read} of the measured amplitude at 0.08, 0.10 and 0.12 Hz. "
-        "The rows *at the keel* are simulated surge at that height, all others as the manifest has it. At the keel errors in surge become "
+        "The rows *at the keel* are simulated surge at that height, all others as the manifest has it. At the keel errors in "
+        "surge become "
         f"{keel['tuned'][BANDS[0]]} (low) and {keel['tuned'][BANDS[1]]} (wave). With {FITTED}'s coefficients they become "
         f"{keel['fitted'][BANDS[0]]} and {keel['fitted'][BANDS[1]]}.",
         "- **The wave-frequency motion is too small, by much the same factor in every sea.** Errors of energy: surge "
         f"{row('tuned', 'surge', BANDS[1])}, heave {row('tuned', 'heave', BANDS[1])}, pitch "
         f"{row('tuned', 'pitch', BANDS[1])}. The measured transfer functions differ by at most {100 * spread:.0f} % between "
-        "the seas: this is linear. Simulated over measured amplitude at 0.08, 0.10 and 0.12 Hz: "
+        "the seas: this is linear. Simulated over measured amplitude at 0.08, 0.10 and 0.12 Hz. "
         f"{amounts(ratio)}. For potential flow it is: {amounts(flow)}. With 1 + Ca for MacCamy-Fuchs surge becomes "
         f"{row('tuned-morison', 'surge', BANDS[1])}.",
         f"- **Low-frequency surge has the wrong growth.** Its errors are {row('tuned', 'surge', BANDS[0])} from the lowest sea "

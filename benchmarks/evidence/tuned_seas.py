@@ -183,14 +183,16 @@ def words(results: dict[str, dict[str, Any]]) -> tuple[str, tuple[str, ...]]:
     beyond = "\n".join(f"- begun from {name}: {', '.join(words) or 'nothing'}" for name, words in left.items())
     said = "\n".join(f"- From {name}: {sentence}." for name, found in results.items() for sentence in found["said"][:6])
     spread = {name: (found["history"][0], found["history"][-1]) for name, found in results.items()}
-    errors = "; ".join(f"from {name} {a:.2f} to {b:.2f}" for name, (a, b) in spread.items())
+    errors = "\n".join(f"- from {name}: {a:.2f} and {b:.2f}" for name, (a, b) in spread.items())
     text = f"""
 The command is `jaxhydro calibrate ../shared/measured/focal-c2 --start ...`. It fits the energies of surge, heave and pitch
 in the low and the wave-frequency band. These are twelve numbers of the two lower seas, in their measured waves. The third sea
 is held out. It is begun twice: from {" and from ".join(STARTS.values())}. These starts are also the middle of the vague priors,
 a factor of 4.5 either way.
 
-The root mean square of ln(simulated / measured energy), after the first iteration and at the end: {errors}.
+The root mean square of ln(simulated / measured energy) is, after the first iteration and at the end:
+
+{errors}
 
 Error of energies, (simulated - measured) / measured, before and after:
 
