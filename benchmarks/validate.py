@@ -73,8 +73,8 @@ INTRO = """\
 
 Made by `make validate` (`python -m benchmarks.validate`); do not edit. Every number is from a run.
 
-J is the sum over the records of the root-mean-square error (RMSE) divided by the record's standard deviation. *z* is an
-error divided by its own stated standard deviation.
+- J is the sum over the records of the root-mean-square error (RMSE) divided by the record's standard deviation.
+- *z* is an error divided by its own stated standard deviation.
 
 """
 SUMMARY = Path(__file__).parent / "evidence" / "summary.md"  # chosen by hand from the sections

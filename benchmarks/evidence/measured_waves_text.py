@@ -164,7 +164,7 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
         "- **The wave-frequency motion is too small, by much the same factor in every sea.** Errors of energy: surge "
         f"{row('tuned', 'surge', BANDS[1])}, heave {row('tuned', 'heave', BANDS[1])}, pitch "
         f"{row('tuned', 'pitch', BANDS[1])}. The measured transfer functions differ by at most {100 * spread:.0f} % between "
-        "the seas: this is linear. Simulated over measured amplitude at 0.08, 0.10 and 0.12 Hz. "
+        "the seas: this is linear. Simulated over measured amplitude at 0.08, 0.10 and 0.12 Hz: "
         f"{amounts(ratio)}. For potential flow it is: {amounts(flow)}. With 1 + Ca for MacCamy-Fuchs surge becomes "
         f"{row('tuned-morison', 'surge', BANDS[1])}.",
         f"- **Low-frequency surge has the wrong growth.** Its errors are {row('tuned', 'surge', BANDS[0])} from the lowest sea "

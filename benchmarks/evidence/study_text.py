@@ -21,8 +21,8 @@ IEC's default (1 and 1.78); the paper's is not known here. One seed is the same 
 - Cases 1 and 2: loads act up to still water on the hull as when upright (`wetting: mean`). The flow is that at the displaced
 horizontal position.
 - The alternative is the wetted length of the displaced hull under a flat surface. Then the hull's own motion past still water
-makes loads of second order, but the wave's does not. The wave's are as large and mostly oppose them. This alternative is a row
-of the third table.
+makes loads of second order, but the wave's motion does not. The wave's would be as large and mostly oppose them. This
+alternative is a row of the third table.
 - Cases 3 and 4: loads act up to the surface at the displaced hull (`instantaneous`), with vertical stretching and MacCamy-Fuchs
 on all four columns.
 - A pontoon is one element lumped at its middle in cases 1 to 3. It is three elements in case 4 (13.5 m each here, 11.5 m in the
