@@ -71,8 +71,10 @@ SECTIONS = (
 INTRO = """\
 # Validation
 
-Made by `make validate` (`python -m benchmarks.validate`); do not edit. Every number is from a run. J is the sum over the
-records of RMSE over standard deviation, *z* an error in its own stated standard deviations.
+Made by `make validate` (`python -m benchmarks.validate`); do not edit. Every number is from a run.
+
+- J is the sum over the records of the root-mean-square error (RMSE) divided by the record's standard deviation.
+- *z* is an error divided by its own stated standard deviation.
 
 """
 SUMMARY = Path(__file__).parent / "evidence" / "summary.md"  # chosen by hand from the sections

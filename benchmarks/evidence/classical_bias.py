@@ -114,14 +114,14 @@ def words(results: list[dict[str, Any]], figures: Path) -> Section:
         "`pontoon.Cd_z` / true ± sd",
     )
     text = f"""
-A heave decay of the NumPy model from {RELEASED:g} m, {DURATION:g} s, noise {1000 * NOISE:g} mm, the pontoon's drag
-multiplied by a factor and B33 by its square. The P-Q analysis (`classical`) gives p and q; what they should be is B_lin/M
-and B_quad/M of the model (`model_damping`). The fit in the time domain frees the two coefficients, begun 1.6 times too
-small, everything else as it is.
+A heave decay of the NumPy model starts from {RELEASED:g} m and lasts {DURATION:g} s, with noise of {1000 * NOISE:g} mm. The
+pontoon's drag is multiplied by a factor and B33 by its square. The P-Q analysis (`classical`) gives p and q. They should be
+B_lin/M and B_quad/M of the model (`model_damping`). The fit in the time domain frees the two coefficients, begun 1.6 times too
+small. Everything else stays as it is.
 
 {table(heads, rows)}
-P-Q takes an extreme for a turning point of an undamped oscillation, and a half cycle's amplitude for constant.
-{held(results)} The fit has no such assumption.
+P-Q assumes that an extreme is a turning point of an undamped oscillation, and that a half cycle's amplitude is constant. The
+fit has no such assumption. {held(results)}
 """
     worst = max(abs(found["fit"][label][0] - 1) / max(found["fit"][label][1], 1e-9) for found in results for label in LABELS)
     short = (f"a coefficient of the time-domain fit is {worst:.1f} of its deviations off",) if worst > 3.5 else ()
@@ -136,8 +136,8 @@ def held(results: list[dict[str, Any]]) -> str:
     wide = [np.ptp(seen[-1][i][1:]) / 2 for i in (0, 1)]
     linear, quadratic = (100 * results[-1]["fit"][label][1] for label in reversed(LABELS))
     return f"""At most p is {100 * off[0]:+.0f} % and q {100 * off[1]:+.0f} % off; {inside} of {2 * len(seen)} intervals
-hold the truth. Of the strongest damping they reach {100 * wide[0]:.0f} and {100 * wide[1]:.0f} % either way, from
-{results[-1].get("half_cycles")} half cycles, where the fit's deviations are {linear:.1f} and {quadratic:.1f} %."""
+hold the truth. For the strongest damping they reach {100 * wide[0]:.0f} and {100 * wide[1]:.0f} % either way, from
+{results[-1].get("half_cycles")} half cycles. The fit's deviations are {linear:.1f} and {quadratic:.1f} % there."""
 
 
 def draw(results: list[dict[str, Any]], path: Path) -> Path:

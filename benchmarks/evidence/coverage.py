@@ -140,9 +140,8 @@ def conclude(results: dict[int, dict[str, Any]], measured: dict[str, dict[str, l
     ]
     heading = (
         (
-            "\nThe same of decays measured in basins, where the model's own error is what is left (deviations "
-            "of the coordinate, "
-            "which are about relative; identifiable coefficients only):\n\n"
+            "\nThe same for decays measured in basins, where the model's own error is what is left. Deviations are of the "
+            "coordinate, which makes them about relative. Identifiable coefficients only:\n\n"
         )
         if real
         else ""
@@ -153,18 +152,20 @@ def conclude(results: dict[int, dict[str, Any]], measured: dict[str, dict[str, l
     every = float(np.mean(hits_of(results, "coloured")))
     count = {kind: sum(kind_of(i) == kind for i in results) for kind in KINDS}
     text = (
-        f"{len(results)} campaigns of four short decays (heave twice 120 s, pitch twice 160 s), made by the "
-        "separate NumPy model, with 19 sets of imperfect releases in turn and noise and disturbance of their own, calibrated "
-        f"in {len(FREE)} coefficients from values that are off by up to a factor of three. {count['white']} have the sensors' "
-        f"white noise only; in {count['drifting']} every channel has a disturbance, too, of {DISTURBED:g} times the noise "
-        f"and a correlation time of {MEMORY:g} s; in {count['ringing']} it rings at the channel's own natural period with a "
-        f"damping ratio of {RINGING:g}, which is the hardest there is: it looks like the decay itself.\n\n"
-        "Share of the 95 % intervals that hold the truth, all coefficients together, with its own 95 % interval (of "
-        "independent ones; those of one campaign are not quite):\n\n"
+        f"{len(results)} campaigns of four short decays (heave twice 120 s, pitch twice 160 s) are made by the separate NumPy "
+        "model. They have 19 sets of imperfect releases in turn. Noise and disturbance are each campaign's own. "
+        f"{len(FREE)} coefficients are calibrated from values that are off by up to a factor of three.\n\n"
+        f"- *White*, {count['white']} campaigns: the sensors' white noise only.\n"
+        f"- *Drifting*, {count['drifting']} campaigns: every channel also has a disturbance of {DISTURBED:g} times the noise "
+        f"with a correlation time of {MEMORY:g} s.\n"
+        f"- *Ringing*, {count['ringing']} campaigns: the disturbance rings at the channel's own natural period with a "
+        f"damping ratio of {RINGING:g}. This is the hardest case, because it looks like the decay itself.\n\n"
+        "The table has the share of the 95 % intervals that hold the truth, all coefficients together. In brackets is the 95 % "
+        "interval of that share, as for independent intervals; those of one campaign are not quite independent:\n\n"
         + table(("Interval", "All", *(kind.capitalize() for kind in KINDS)), over)
         + "\nBy coefficient, all campaigns:\n\n"
         + table(("Coefficient", METHODS["coloured"], METHODS["profile"], METHODS["blocks"]), rows)
-        + "\nHow many times too small the standard deviation is that takes the residual as white (median):\n\n"
+        + "\nFactor by which the standard deviation is too small if the residual is taken as white (median):\n\n"
         + table(("Coefficient", *(kind.capitalize() for kind in KINDS)), excess)
         + heading
         + (table(("Campaign", "Coefficient", "Deviation", "As if white", "Too small by"), real) if real else "")

@@ -26,18 +26,19 @@ TITLE = "What is missing: diagnoses of campaigns from an independent tank"
 NAMED_MIDDLE, NAMED_STRONG, IN_SET, RIGHT_WEAK, BOTH, OUTSIDE_ANSWERED, SURE = 0.92, 0.95, 0.97, 0.95, 0.85, 0.90, 0.90
 FALSE_ALARMS = 1 / 40
 SEARCHED = (
-    " Sources before 2026-11-27 also tried seas of simpler second order, which campaigns now state. Their thresholds were set "
-    "by both halves of the campaigns."
+    "\n\nSources before 2026-11-27 also tried seas of simpler second order, which campaigns now state. Their thresholds were "
+    "set by both halves of the campaigns."
 )
 REPORTED = (
     "Half of the campaigns are there to set thresholds by, the other half to report. This is the half to report, as the "
     "[public benchmark](discovery-benchmark.md) counts it:"
 )
 LAWS = (
-    "Two laws of drag are not the same in both programs, so that no values of one follow the other. Where drag changes with "
-    "amplitude, in a sea the tank's goes with the surface's Keulegan-Carpenter number in all strips, the package's with every "
-    "strip's own speed; where it is apart for slow motion, the tank filters the flow relative to the strips, as HydroDyn does, "
-    "the package the platform's motion."
+    "Two laws of drag are not the same in both programs, so that no values of one follow the other:\n\n"
+    "- Drag that changes with amplitude: in a sea the tank's goes with the surface's Keulegan-Carpenter number in all strips. "
+    "The package's goes with every strip's own speed.\n"
+    "- Drag that is apart for slow motion: the tank filters the flow relative to the strips, as HydroDyn does. The package "
+    "filters the platform's motion."
 )
 OUTSIDE_WORDS = {
     "not seen": "not seen",
@@ -51,27 +52,29 @@ def tally_sentences(tally: Tally) -> str:
     """Counts at the middle strength, in sentences."""
     two = (
         (
-            f"; of two effects at once both were found in {tally.both}, and with those that they cannot be told from in "
-            f"{tally.in_sets}"
+            f"\n- Two effects at once: both were found in {tally.both}. With those that they cannot be told from, both were "
+            f"found in {tally.in_sets}."
         )
         if tally.both.of
         else ""
     )
     others = (
         (
-            f" Of effects of this strength that no candidate has the law of, {tally.unexplained} are said to be unexplained, "
-            f"and {tally.lower} are answered with a law that lowers the error of the tests that were not fitted."
+            f"\n- Effects of this strength that no candidate has the law of: {tally.unexplained} are said to be unexplained. "
+            f"{tally.lower} are answered with a law that lowers the held-out error."
         )
         if tally.lower.of
         else ""
     )
     return (
-        f"At the middle strength the right effect is named first in {tally.named}, and among those told apart by nothing, "
-        f"or found after another, in {tally.listed}; of campaigns with nothing missing {tally.alarms} raised a false "
-        f"alarm, an effect or something unexplained{two}. The error of the tests that were not fitted is then within "
-        f"{MAX_ERROR_RATIO} times that of the same platform in the same waves with nothing missing in {tally.near}; in "
-        f"{tally.told} it is, or what was found is what is in the tank and nothing else, so that a model that was told the "
-        f"truth has the same error.{others}"
+        f"At the middle strength:\n\n"
+        f"- The right effect is named first in {tally.named}. It is named first, named after another, or cannot be told from "
+        f"what is named first, in {tally.listed}.\n"
+        f"- Nothing missing: {tally.alarms} raised a false alarm, an effect or something unexplained.{two}\n"
+        "- The error of the tests that were not fitted (held-out error) is compared with that of the same platform in the same "
+        f"waves with nothing missing. It is within {MAX_ERROR_RATIO} times that with nothing missing in {tally.near}; in "
+        f"{tally.told} it is, or exactly what is missing was found. A model that was told the truth then has the same error."
+        f"{others}\n\n"
     )
 
 
@@ -142,14 +145,19 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
     tally, total = Tally.of(said, answers, ratio), sum(1 for _ in cases())
     by = f", {earlier} of them by earlier sources" if earlier else ""
     text = (
-        f"Nine decays and two seas of 1600 s each, from `benchmarks/tank.py`, a plain NumPy tank that shares no code with the "
-        f"package: noise, imperfect releases, mass and mooring not quite as declared. {len(results)} of {total} campaigns were "
-        f"run{by}.{SEARCHED if earlier else ''} {tally_sentences(tally)} {other_strengths(said, answers)}\n\n"
+        f"{tally_sentences(tally)}{other_strengths(said, answers)}\n\n"
+        "Each campaign has nine decays and two seas of 1600 s each. They come from `benchmarks/tank.py`, a plain NumPy tank "
+        "that shares no code with the package. It has noise, imperfect releases, and mass and mooring not quite as in the "
+        f"platform file. {len(results)} of {total} campaigns were run{by}.{SEARCHED if earlier else ''}\n\n"
         f"{REPORTED}\n\n{table(('', *COLUMNS), lines_of(half_to_report(said, answers)))}\n{LAWS}\n\n"
-        f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
-        f"added; the number: error of the tests that were not fitted, over that of the same platform in the same waves with "
-        f"nothing missing, by sources of its time; a force: the law proposed for what is unexplained, and the share that it "
-        f"gives in what was not fitted; in doubt: what helps, and is outdone by something that is refused):\n\n"
+        "What was said, seed by seed:\n\n"
+        "- *nothing*: nothing missing\n"
+        "- a name: that effect instead\n"
+        "- in brackets: what else was added\n"
+        "- the number: the held-out error, over that of the same platform in the same waves with nothing missing, by sources "
+        "of its time\n"
+        "- a force: the law proposed for what is unexplained, and the share of what was not fitted that it gives\n"
+        "- in doubt: what helps, and is outdone by something that is refused\n\n"
         + table(("effect in the tank", *STRENGTHS.values()), rows)
     )
     nulls = {case: result for case, result in results.items() if not case.effect}
@@ -201,9 +209,9 @@ def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
             )
         )
     return (
-        f"\nWhat an effect has to reach, and what the {len(every)} candidates reached that were refitted in "
-        f"{len(tried)} campaigns with nothing missing: at most, and at most among those that pass all the other rules, which "
-        f"is what a threshold has to be above:\n\n"
+        f"\nThe table has the threshold that an effect has to reach. {len(every)} candidates were refitted in {len(tried)} "
+        "campaigns with nothing missing. *At most* is the most that they reached. *Past the others* is the most among those "
+        "that pass all the other rules. A threshold has to be above that:\n\n"
         + table(("rule", "threshold", "at most", "told of an effect without the rule", "at most, past the others"), rows)
     )
 

@@ -97,16 +97,17 @@ def run(figures: Path) -> Section:
         "",
         "- Measured transfer functions are compared with linear potential flow on the same hull: WAMIT's coefficients in "
         "focal-c4, the mass and mooring of campaign 2.",
-        "- Surge of a point at height z is S e^(ikd) + z P. S is surge by potential flow, P is pitch as measured, k is the "
-        "wavenumber, d is how much further along the waves the gauge stood.",
+        "- Surge of a point at height z is S e^(ikd) + z P. S is surge by potential flow. P is pitch as measured. The "
+        "wavenumber is k. The gauge stood further along the waves by d.",
         "- Heave of a point at x is H e^(ikd) - x P. H is heave by potential flow.",
-        f"- d, z and x minimise the relative errors of both at all lines from {BAND[0]} to {BAND[1]} Hz with a coherence above "
-        f"{MIN_COHERENCE} in all three motions. The last column has the mean of the seas and their standard deviation.",
+        "- d, z and x minimise the relative errors of both surge and heave. All lines from "
+        f"{BAND[0]} to {BAND[1]} Hz with a coherence above {MIN_COHERENCE} in all three motions count. "
+        "The last column has the mean of the seas and their standard deviation.",
         "",
         table(["", *seas, "mean"], body).strip(),
         "",
-        "Two more things say that the keel was tracked, 20 m below still water: heave as recorded in still water, and how far "
-        "surge moves with pitch in its resonance (section *Measured waves*).",
+        "Two more things say that the keel was tracked, 20 m below still water (section *Measured waves*). They are heave as "
+        "recorded in still water, and how far surge moves with pitch in its resonance.",
         "",
         f"Mass: the campaign's own numbers say {result['mass'] / 1e3:.0f} t. Another published mass matrix of the hull says "
         f"{OTHER_MASS / 1e3:.0f} t, {100 * (OTHER_MASS / result['mass'] - 1):+.1f} %.",

@@ -70,8 +70,8 @@ def run(figures: Path) -> Section:
         for i, (name, lines) in enumerate(VARIANTS.items())
     }
     text = [
-        "Potential flow and strips are judged by what was measured. Nothing is fitted: coefficients are those declared (drag "
-        "1 across columns, 1.5 across pontoons), the tables are whole, and the tracked point is that of the "
+        "Potential flow and strips are judged by what was measured. Nothing is fitted. Coefficients are those of the platform "
+        "file (drag 1 across columns, 1.5 across pontoons), and the tables are whole. The tracked point is that of the "
         f"section before (x = {TRACKED['sensor_reference.x']:g} m, z = {TRACKED['sensor_reference.z']:g} m).",
         "",
         "- *Second-order forces*: `second_order_forces: slender_body`.",

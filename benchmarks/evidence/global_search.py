@@ -115,23 +115,25 @@ def conclude(results: dict[str, list[dict[str, Any]]], best: float, floor: float
         "CPU s in all",
     )
     text = (
-        f"The paper's problem: one decay each of surge, heave and pitch ({', '.join(RECORDS)} of the built-in campaign) and "
-        f"the platform's eleven coefficients, each anywhere from a tenth to ten times of its declared value, log-uniform. "
-        f"Every method has the same bounds, coordinates, simulator, time step and {BUDGET:g} s of CPU time, compilation "
-        f"apart, and is run from {seeds} seeds. *Within 1 %* is of the least J that any run found, {number(best)}; what it "
-        "took to come there is the median over the seeds that did. A simulation is one of one record, a part of a record "
-        "counting as that part; an iteration of least squares counts as one for every unknown and one, as finite differences "
-        "would take.\n\n"
+        f"The paper's problem is one decay each of surge, heave and pitch ({', '.join(RECORDS)} of the built-in campaign). The "
+        "platform's eleven coefficients are each anywhere from a tenth to ten times the value in the platform file, "
+        "log-uniform. "
+        f"Every method has the same bounds, coordinates, simulator and time step, and is run from {seeds} seeds. Each run has "
+        f"{BUDGET:g} s of CPU time, compilation apart.\n\n"
+        f"- *Within 1 %* is of the least J that any run found, {number(best)}. What it took to come there is the median over "
+        "the seeds that did.\n"
+        "- A simulation is one of one record; a part of a record counts as that part. An iteration of least squares counts as "
+        "one for every unknown and one, as finite differences would take.\n\n"
         + table(head, rows)
-        + "\n- *Multi-start LM* simulates 64 Sobol points over 1.25 cycles, in batches, and calibrates from the best four as "
-        "`calibrate` does, which fits the records' releases and the sensors' offsets too, one after the other as far as the "
-        "budget goes.\n"
-        "- *CMA-ES* is Hansen's `cma` (population 11, doubled at a restart), *differential evolution* SciPy's (165), the "
-        "*genetic algorithm* pymoo's (99): each at its defaults, populations simulated in batches of 11 or 33. They know "
-        "nothing of releases, and are given them: positions and rates from least squares over the first 3.1 cycles, "
-        "whose coefficients are thrown away, its time and simulations counted; offsets are eliminated in J. Nine unknowns a "
-        f"record less is an advantage. What it costs: with these releases the best coefficients have J {number(floor)}, "
-        f"{100 * (floor / best - 1):.2g} % above the least J.\n" + comparison(results, medians)
+        + "\n- *Multi-start LM* simulates 64 Sobol points over 1.25 cycles, in batches. It calibrates from the best four as "
+        "`calibrate` does, one after the other as far as the budget goes. This fits the records' releases and the sensors' "
+        "offsets too.\n"
+        "- *CMA-ES* is Hansen's `cma` (population 11, doubled at a restart). *Differential evolution* is SciPy's (165). The "
+        "*genetic algorithm* is pymoo's (99). Each has its defaults. Populations are simulated in batches of 11 or 33.\n"
+        "- These three know nothing of releases, and are given them. Positions and rates come from least squares over the "
+        "first 3.1 cycles, whose coefficients are thrown away. Its time and simulations are counted. Offsets are eliminated "
+        "in J. Nine unknowns a record less is an advantage. What it costs: with these releases the best coefficients have J "
+        f"{number(floor)}, {100 * (floor / best - 1):.2g} % above the least J.\n" + comparison(results, medians)
     )
     short = []
     if share.get("multistart", 1.0) < 1:

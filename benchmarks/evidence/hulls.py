@@ -126,17 +126,15 @@ def text(results: dict[str, Any], variants: dict[str, Any], panels: dict[str, An
         say(f"  {name}: {dof} in waves differs most from plain NumPy, {percent(apart)}")
         if abs(apart) > EXACT:
             short.append(
-                f"{case.title}: {dof} in waves of {case.period:g} s differs by {percent(apart)} from the same hull "
+                f"{case.title}: {dof} in waves of {case.period:g} s differs by {percent(apart)} from the same strips "
                 f"in plain NumPy (goal {100 * EXACT:g} %)"
             )
     largest = {label: max(abs(x) for kind in one.values() for x in kind.values()) for label, one in variants.items()}
     body = (
         "The platforms are built in (`jaxhydro platforms`); their files have the source of every number. Mass, "
-        "geometry and linearised mooring are published. Added mass is that of strips, whose coefficients follow "
-        "from published or "
-        "computed added mass in surge and heave; periods of pitch, roll and yaw are predictions. Waves are small: 1 "
-        "cm high "
-        "amplitudes, 0.2 mm for the ship section.\n\n"
+        "geometry and linearised mooring are published. Added mass is that of strips. The strips' coefficients follow from "
+        "published or computed added mass in surge and heave. Periods of pitch, roll and yaw are predictions. Waves are small: "
+        "1 cm high amplitudes, 0.2 mm for the ship section.\n\n"
         "**Natural periods**, undamped and coupled:\n\n"
         + table(HEAD, rows_of_periods)
         + "\nWhat explains the larger differences:\n\n"
@@ -152,14 +150,12 @@ def text(results: dict[str, Any], variants: dict[str, Any], panels: dict[str, An
         + table(HEAD, rows_of_motion)
         + "\nThe same strips in plain NumPy share no code with jaxhydro. What differs by more than "
         f"{100 * EXACT:g} %:\n\n"
-        "- The ship section rolls by the difference of two large moments. A strip afloat takes the waves as linear "
-        "across its "
-        "section, plain NumPy integrates them.\n\n"
-        "Panels diffract and radiate waves, strips do not. Heave of OC4-DeepCwind in waves of 14 s is what is left "
-        "of pressures "
-        "that nearly cancel.\n\n"
-        f"OC4-DeepCwind with every offset column as two members differs by {largest['two members']:.1g} from "
-        f"the one with a step in "
-        f"`stations`, in all periods and motions. A model at 1:50 has the Froude-scaled values to {largest['1:50']:.1g}.\n"
+        "- The ship section rolls by the difference of two large moments. A floating strip takes the waves as linear across "
+        "its section. Plain NumPy integrates them.\n\n"
+        "Panels diffract and radiate waves, strips do not. Heave of OC4-DeepCwind in waves of 14 s is what is left of "
+        "pressures that nearly cancel.\n\n"
+        f"OC4-DeepCwind with every offset column as two members differs by {largest['two members']:.1g} from the one "
+        "with a step in `stations`, in all periods and motions. "
+        f"A model at 1:50 has the Froude-scaled values to {largest['1:50']:.1g}.\n"
     )
     return Section(TITLE, body, (), tuple(short))

@@ -79,9 +79,9 @@ def words(results: dict[str, dict[str, Any]], decays: int, sea: Any) -> str:
     )
     state = f"Hs {sea.test.significant_wave_height:g} m, Tp {sea.test.peak_period:g} s"
     return f"""
-The shared campaign `nothing-missing`, made by a NumPy model that shares nothing with the package: its {decays} decays, and
-the same with its test {sea.id} in irregular waves ({state}, {np.ptp(sea.time):.0f} s), of which the energies in the low and
-the wave-frequency band are fitted, or the motion sample by sample.
+The shared campaign `nothing-missing` is made by a NumPy model that shares nothing with the package. Its {decays} decays are
+fitted alone, and then together with its test {sea.id} in irregular waves ({state}, {np.ptp(sea.time):.0f} s).
+Of that test either the energies in the low and the wave-frequency band are fitted, or the motion sample by sample.
 Value and standard deviation with coloured errors; in brackets what is known to no better than {100 * VAGUE:.0f} %:
 
 {table(["Coefficient", *results], rows)}

@@ -146,10 +146,11 @@ def draw(name: str, path: Path) -> None:
 
 def intro() -> str:
     return (
-        "Errors in waves are (simulated - measured) / measured, of energies in the paper's bands. The paper's best case "
-        "(IFAC MECC 2025, Sarker et al., the same hull with its coefficients tuned to decays) leaves "
+        "Errors in waves are (simulated - measured) / measured, of energies in the paper's bands. *Before* is the model of the "
+        "platform file, fitted to the same records. The paper's best case (IFAC MECC 2025, Sarker et al.) has the same hull "
+        "with its coefficients tuned to decays. Its errors in surge, heave and pitch are: "
         + "; ".join(f"{BANDS[band]} frequency " + ", ".join(f"{100 * x:+.0f} %" for x in row) for band, row in PAPER.items())
-        + " in surge, heave and pitch. *Before* is the declared model, fitted to the same records.\n\n"
+        + ".\n\n"
     )
 
 

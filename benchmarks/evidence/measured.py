@@ -84,8 +84,8 @@ def lack(name: str, found: dict[str, Any]) -> str:
     cycles = np.array(found["cycles"])
     changes = [100 * (third(cycles, i, True) / third(cycles, i, False) - 1) for i in (1, 2, 3, 4)]
     return (
-        f"{name}: RMSE is {found['rmse'] / found['noise']:.0f} times the sensor's noise; from small to large amplitudes the "
-        f"period changes by {changes[0]:+.2f} % measured and {changes[1]:+.2f} % simulated, the decrement by "
+        f"{name}: RMSE is {found['rmse'] / found['noise']:.0f} times the sensor's noise. From small to large amplitudes the "
+        f"period changes by {changes[0]:+.2f} % measured and {changes[1]:+.2f} % simulated. The decrement changes by "
         f"{changes[2]:+.0f} % and {changes[3]:+.0f} %"
     )
 
@@ -114,7 +114,7 @@ def words_of(name: str, words: str, found: dict[str, Any]) -> str:
         f"{words}.",
         "",
         f"RMSE {number(found['rmse'], 2)} {unit}, {percent(found['relative'])} of the record's standard deviation, "
-        f"{found['rmse'] / found['noise']:.0f} times the sensor's noise: what is left is the model's error, not noise. Natural "
+        f"{found['rmse'] / found['noise']:.0f} times the sensor's noise. What is left is the model's error, not noise. Natural "
         f"period of {found['channel']} of the fitted model: {found['natural_period']:.3f} s. "
         f"{'Converged' if found['converged'] else 'Not converged'} in {found['iterations']} iterations.",
         "",
@@ -123,9 +123,10 @@ def words_of(name: str, words: str, found: dict[str, Any]) -> str:
         f"Half cycles against amplitude ({unit}): period (s) and logarithmic decrement per cycle, measured and simulated:",
         "",
         table(("Amplitude", "Period", "simulated", "Decrement", "simulated"), seen),
-        f"From the largest third of the amplitudes to the smallest the period goes from {third(cycles, 1, True):.3f} to "
-        f"{third(cycles, 1, False):.3f} s measured, {third(cycles, 2, True):.3f} to {third(cycles, 2, False):.3f} s simulated; "
-        f"the decrement from {third(cycles, 3, True):.3f} to {third(cycles, 3, False):.3f} measured, "
+        "From the largest third of the amplitudes to the smallest:\n\n"
+        f"- The period goes from {third(cycles, 1, True):.3f} to {third(cycles, 1, False):.3f} s measured, "
+        f"{third(cycles, 2, True):.3f} to {third(cycles, 2, False):.3f} s simulated.\n"
+        f"- The decrement goes from {third(cycles, 3, True):.3f} to {third(cycles, 3, False):.3f} measured, "
         f"{third(cycles, 4, True):.3f} to {third(cycles, 4, False):.3f} simulated.",
     ]
     return "\n".join(lines)

@@ -53,7 +53,10 @@ def lacks(found: dict[str, Any]) -> tuple[str, ...]:
     """What the model with the paper's coefficients misses."""
     each = [f"{c} {', '.join(f'{off(s, c, band):+.0f}' for s in found['seas'].values())} %" for band in BANDS for c in MOTIONS]
     low, wave = "; ".join(each[:3]), "; ".join(each[3:])
-    return (f"focal-c2 in its three seas, Table 1's coefficients, unfitted: low-frequency energy {low}; wave-frequency {wave}",)
+    return (
+        f"focal-c2 in its three seas, Table 1's coefficients, unfitted. Low-frequency energy: {low}. "
+        f"Wave-frequency energy: {wave}",
+    )
 
 
 def words(found: dict[str, dict[str, Any]], vague: list[str], potential: dict[str, list[list[float]]]) -> str:
@@ -69,22 +72,26 @@ def intro(found: dict[str, dict[str, Any]], vague: list[str]) -> list[str]:
     seas = ", ".join(f"{name} {height(s):.2f} ({s['stated']:g})" for name, s in base["seas"].items())
     periods = {w: ", ".join(f"{p:.1f}" for p in found[n]["periods"]) for w, n in ((FITTED, "fitted"), (TUNED, "tuned"))}
     return [
-        "FOCAL campaign 2 (University of Maine, 1:70, full-scale values): one run of 10 700 s in head waves of three steps "
-        "of severity. The sea is made once from the whole wave record (first order 0.03 to 0.3 Hz, "
-        f"{100 * base['inside']:.1f} % of its variance, {base['components']} waves; order 2: less what they bind, which "
-        f"misses {100 * base['mismatch']:.1g} % of the band after {base['rounds']} rounds), and the platform starts at rest "
-        "in its equilibrium with the record. Motions count from the still water before the wavemaker; the first 500 s of "
-        "every step are left out. Errors are (simulated - measured) / measured of the integral of the spectrum (Welch, Hann "
-        "segments of 1000 s, half overlapped): low, 0.005-0.025 Hz in surge, 0.02-0.055 Hz in heave and pitch; wave, "
-        "0.06-0.15 Hz, in the third sea from 0.05 Hz. Nothing is fitted to these seas: mass, mooring and hydrostatics are "
-        "those of the campaign's own platform file.",
+        "FOCAL campaign 2 (University of Maine, 1:70, full-scale values) is one run of 10 700 s in head waves of three steps "
+        "of severity. Nothing is fitted to these seas. Mass, mooring and hydrostatics are those of the campaign's own platform "
+        "file.\n\n"
+        "- The sea is made once from the whole wave record. First order: 0.03 to 0.3 Hz, "
+        f"{100 * base['inside']:.1f} % of its variance, {base['components']} waves. Order 2: the waves that these bind are "
+        f"subtracted. Together both orders miss {100 * base['mismatch']:.1g} % of the band after {base['rounds']} rounds.\n"
+        "- The platform starts at rest in its equilibrium with the record. Motions count from the still water before the "
+        "wavemaker. The first 500 s of every step are left out.\n"
+        "- Errors are (simulated - measured) / measured of the integral of the spectrum (Welch, Hann segments of 1000 s, half "
+        "overlapped).\n"
+        "- The low band is 0.005-0.025 Hz in surge, 0.02-0.055 Hz in heave and pitch. The wave band is 0.06-0.15 Hz, in the "
+        "third sea from 0.05 Hz.",
         "",
-        f"Two sets of coefficients. *{FITTED}*: `jaxhydro calibrate` on focal-c4, the same hull's release in surge on another "
-        f"mooring. That one record determines little: {', '.join(f'`{x}`' for x in vague)} stay near what its platform file "
-        f"starts from, and only `linear_damping.B11` is a result. *{TUNED}*: Table 1 of the paper this package started from, "
-        "tuned there to decays in surge, heave and pitch. Natural periods in surge, heave and pitch: "
-        f"{periods[FITTED]} s and {periods[TUNED]} s. `MacCamy-Fuchs` replaces 1 + Ca in the wave load on columns, `ramp` "
-        "keeps it in long waves.",
+        f"There are two sets of coefficients:\n\n"
+        f"- *{FITTED}*: `jaxhydro calibrate` on focal-c4, the same hull's release in surge on another mooring. That one record "
+        f"determines little, and only `linear_damping.B11` is a result. Near what its platform file starts from stay "
+        f"{', '.join(f'`{x}`' for x in vague)}. Natural periods in surge, heave and pitch: {periods[FITTED]} s.\n"
+        f"- *{TUNED}*: Table 1 of the paper this package started from, tuned there to decays in surge, heave and pitch. "
+        f"Natural periods: {periods[TUNED]} s.\n\n"
+        "`MacCamy-Fuchs` replaces 1 + Ca in the wave load on columns. `ramp` keeps 1 + Ca in long waves.",
         "",
         f"Significant heights of the windows, in brackets as stated in the manifest (m): {seas}.",
         "",
@@ -140,34 +147,37 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
     return [
         "What it shows, with Table 1's coefficients, order 2 and MacCamy-Fuchs unless said:",
         "",
-        "- **Signs, units, clock and gauge hold.** Measured and simulated waves agree at the gauge; coherence with the wave is "
-        "0.96 to 1.00 at 0.08 to 0.12 Hz in all three motions, and phases have the same signs and agree within 15 degrees in "
-        "surge and 25 in heave and pitch. Linear potential flow on the same hull (WAMIT's coefficients in focal-c4, mass and "
-        "mooring of this campaign, no drag, at the place where the platform rests) is as near in phase, and has the measured "
-        "amplitudes of heave and pitch.",
+        "- **Signs, units, clock and gauge hold.** Measured and simulated waves agree at the gauge. Coherence with the wave is "
+        "0.96 to 1.00 at 0.08 to 0.12 Hz in all three motions. Phases have the same signs and agree within 15 degrees in surge "
+        "and 25 in heave and pitch. Linear potential flow on the same hull is as near in phase, and has the measured "
+        "amplitudes of heave and pitch. It has WAMIT's coefficients in focal-c4, mass and mooring of this campaign, and no "
+        "drag, at the place where the platform rests.",
         "- **The point that was measured seems to be at the keel**, not at still water as the campaign format has it. In "
-        f"pitch's resonance, {RESONANCE} Hz, the model's reference point moves {base['arm']:+.1f} m per rad of pitch, the "
-        f"measured one {arms[0]} m in the three seas, and {arms[1]} m of sway per rad of roll (coherence {least:.2f} or more): "
-        f"both say some 20 m lower. And heave as recorded reads {KEEL} m in still water. Surge of potential flow read there "
-        f"has {read} of the measured amplitude at 0.08, 0.10 and 0.12 Hz. The rows *at the keel* are simulated surge there, "
-        f"all others as the manifest has it. Errors in surge become {keel['tuned'][BANDS[0]]} (low) and "
-        f"{keel['tuned'][BANDS[1]]} (wave); with {FITTED}'s coefficients {keel['fitted'][BANDS[0]]} and "
-        f"{keel['fitted'][BANDS[1]]}.",
-        "- **The wave-frequency motion is too small, by much the same factor in every sea**: energy in surge "
+        f"pitch's resonance, {RESONANCE} Hz, the model's reference point moves {base['arm']:+.1f} m per rad of pitch. The "
+        f"measured point moves {arms[0]} m in the three seas, and {arms[1]} m of sway per rad of roll (coherence "
+        f"{least:.2f} or more). Both say some 20 m lower. Heave as recorded also reads {KEEL} m in still water. "
+        f"Surge of potential flow at that height has {read} of the measured amplitude at 0.08, 0.10 and 0.12 Hz. "
+        "The rows *at the keel* are simulated surge at that height, all others as the manifest has it. At the keel errors in "
+        "surge become "
+        f"{keel['tuned'][BANDS[0]]} (low) and {keel['tuned'][BANDS[1]]} (wave). With {FITTED}'s coefficients they become "
+        f"{keel['fitted'][BANDS[0]]} and {keel['fitted'][BANDS[1]]}.",
+        "- **The wave-frequency motion is too small, by much the same factor in every sea.** Errors of energy: surge "
         f"{row('tuned', 'surge', BANDS[1])}, heave {row('tuned', 'heave', BANDS[1])}, pitch "
         f"{row('tuned', 'pitch', BANDS[1])}. The measured transfer functions differ by at most {100 * spread:.0f} % between "
-        f"the seas: this is linear. Simulated over measured amplitude at 0.08, 0.10 and 0.12 Hz: {amounts(ratio)}; potential "
-        f"flow: {amounts(flow)}. With 1 + Ca for MacCamy-Fuchs surge becomes {row('tuned-morison', 'surge', BANDS[1])}.",
-        f"- **Low-frequency surge has the wrong growth**: {row('tuned', 'surge', BANDS[0])} from the lowest sea to the highest "
-        f"(order 1: {row('tuned-1', 'surge', BANDS[0])}; {FITTED}: {row('fitted', 'surge', BANDS[0])}). Its standard deviation "
-        f"grows with the significant height to the power {power(base['seas'], 0):.2f} measured, {power(base['seas'], 1):.2f} "
-        "simulated: too little excited, or too much damped, in the lowest sea, and the reverse in the highest.",
+        "the seas: this is linear. Simulated over measured amplitude at 0.08, 0.10 and 0.12 Hz: "
+        f"{amounts(ratio)}. For potential flow it is: {amounts(flow)}. With 1 + Ca for MacCamy-Fuchs surge becomes "
+        f"{row('tuned-morison', 'surge', BANDS[1])}.",
+        f"- **Low-frequency surge has the wrong growth.** Its errors are {row('tuned', 'surge', BANDS[0])} from the lowest sea "
+        f"to the highest. With order 1 they are {row('tuned-1', 'surge', BANDS[0])}, with {FITTED}'s coefficients "
+        f"{row('fitted', 'surge', BANDS[0])}. The standard deviation grows with the significant height to the power "
+        f"{power(base['seas'], 0):.2f} measured, {power(base['seas'], 1):.2f} simulated. Surge is too little excited, or too "
+        "much damped, in the lowest sea, and the reverse in the highest.",
         f"- **Mean surge** is off by {mean} %. It counts from still water: where the platform rests does not matter.",
         f"- **Low-frequency heave and pitch are missing**: {row('tuned', 'heave', BANDS[0])} and "
         f"{row('tuned', 'pitch', BANDS[0])}. The measured peaks in {SEA} are at {peak(mid, 'heave', 0):.1f} s (heave) and "
         f"{peak(mid, 'pitch', 0):.1f} s (pitch); the model's natural periods are {base['periods'][1]:.1f} and "
-        f"{base['periods'][2]:.1f} s. Heave's natural period is too short, so its added mass too small; whether "
-        "the rest, and pitch's, is excitation that is not there or damping that is too large, this comparison does not say.",
+        f"{base['periods'][2]:.1f} s. Heave's natural period is too short, so its added mass is too small. The rest, and what "
+        "is missing in pitch, can be missing excitation or too much damping. This comparison does not say which.",
         f"- Twelve elements along every pontoon instead of three change no error by more than {finer:.2f} points.",
         "",
     ]
@@ -245,7 +255,7 @@ def responses(found: dict[str, dict[str, Any]], potential: dict[str, list[list[f
     return [
         f"#### Transfer functions from the measured wave in {SEA}, order 2, MacCamy-Fuchs",
         "",
-        "The check of signs, units and the gauge's place before an error is believed: a phase above 0 leads the wave.",
+        "This checks signs, units and the gauge's place before an error is believed. A phase above 0 leads the wave.",
         "",
         table(heads, rows),
     ]

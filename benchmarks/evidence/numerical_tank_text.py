@@ -160,15 +160,16 @@ def words(results: dict[str, Any], known: dict[str, Any]) -> str:
     surge = [percent(stages(results)[k][HELD]["relative"]["surge"]) for k in ("calibrated to decays", "with what was found")]
     stiff, at_rest = (quantity(x, None, "N/m") for x in (setup()["AddCLin"][0][0], lines["static"][0]))
     return f"""
-OpenFAST's runs with potential flow (`decay_*_nwt` and `{SEA}` of the shared reference runs: radiation with memory, the
-full difference-frequency QTF, catenary lines, quadratic damping; waves of first order, which the campaign states) are given to
-`jaxhydro diagnose` as if they were measured: every {EVERY}th sample, with noise of 0.01 m in surge, 0.005 m in heave and
-0.01 deg in pitch. The declared model is that of OpenFAST's runs by strips: the same rigid body, Table 1's coefficients, linear
-damping, a linear mooring.
-Waves meet it at its mean position (`waves_at: mean`), as in the tank, where `ExctnDisp` is 0. Three decays and the sea's first
-half, from {TRANSIENT:.0f} to {HALF:.0f} s, are fitted; its second half is held out. No run is a static pull-out (`{REST}` rests
-at zero), so the mooring declared is the tangent at rest, the stiffness matrix of the runs by strips: {stiff} in surge, where
-catenaries of these lines give {at_rest}.
+OpenFAST's runs with potential flow are given to `jaxhydro diagnose` as if they were measured.
+
+- *Tank*: `decay_*_nwt` and `{SEA}` of the shared reference runs. They have radiation with memory, the full
+difference-frequency QTF, catenary lines and quadratic damping. Waves are of first order, which the campaign states.
+- *Records*: every {EVERY}th sample, with noise of 0.01 m in surge, 0.005 m in heave and 0.01 deg in pitch.
+- *Declared model*: that of OpenFAST's runs by strips. It has the same rigid body, Table 1's coefficients, linear damping and a
+linear mooring. Waves meet it at its mean position (`waves_at: mean`), as in the tank, where `ExctnDisp` is 0.
+- *Fit*: three decays and the sea's first half, from {TRANSIENT:.0f} to {HALF:.0f} s. The second half is held out.
+- *Mooring*: no run is a static pull-out (`{REST}` rests at zero). So the declared mooring is the tangent at rest, the stiffness
+matrix of the runs by strips. It is {stiff} in surge, where catenaries of these lines give {at_rest}.
 
 RMSE over the standard deviation of the released motion:
 
@@ -184,8 +185,10 @@ deviation, offset included:
 **The decays alone**, blocks left out in turn: {verdict_of(alone)}
 
 {effects_table(alone) if alone["effects"] else ""}
-**The tank's own tables among the candidates** (`radiation`, `excitation` and `drift` of the platform file, `use: candidate`:
-the WAMIT files that OpenFAST's forces are made of; a share of 1 is the truth): {verdict_of(results["tables"])} J of the
+**The tank's own tables among the candidates.** They are `radiation`, `excitation` and `drift` of the platform file, with
+`use: candidate`. These are the WAMIT files that OpenFAST's forces are made of. A share of 1 is the truth.
+
+The verdict: {verdict_of(results["tables"])} J of the
 held-out half becomes {results["tables"]["objective"]["holdout"][1]:.2f}. Not in the tank:
 {listed(not_there(results["tables"], OF_TABLES)) or "nothing of that"}. Beside the tables strips still have a drift, an
 excitation by their drag and a viscous damping of their own.
@@ -217,18 +220,19 @@ def reasons(results: dict[str, Any], known: dict[str, Any]) -> str:
     gauge = said_of(found, "wave_gauge_position", None)
     return f"""
 **First-order excitation.** At the waves' peak {excitation(known)}. `wave_excitation` is a coefficient of pressure by group of
-members and has no phase of its own; what would shift phases is a wave gauge elsewhere (here: {gauge}). The error of
-wave-frequency surge is {waves[0]:+.0f} % with the decays' coefficients, {waves[1]:+.0f} % where these are fitted to the sea as
-well, and {waves[2]:+.0f} % with what was found.
+members and has no phase of its own. A wave gauge elsewhere would shift phases (here: {gauge}). The error of wave-frequency
+surge is {waves[0]:+.0f} % with the decays' coefficients. It is {waves[1]:+.0f} % where these are fitted to the sea as well, and
+{waves[2]:+.0f} % with what was found.
 
 **Slow motion.** `linear_damping.B11` is {damping[0]} by the decays, {damping[1]} fitted to decays and sea, {damping[2]} with
-what was found; of the surge decay {decay[0]}, {decay[1]} and {decay[2]} are left.{settled} The tank's quadratic damping goes
-with the platform's own velocity, drag of strips with that by the water, which in waves drifts them (their mean surge as
-declared is {drifts:.2f} m, the tank's {drifted:.2f} m): a law of drift that is found beside it is no estimate of
-the tank's force, as the table of their sizes shows.
+what was found. Of the surge decay {decay[0]}, {decay[1]} and {decay[2]} are left.{settled} The tank's quadratic damping goes
+with the platform's own velocity. Drag of strips goes with the velocity relative to the water, which in waves drifts them. Their
+mean surge as declared is {drifts:.2f} m, the tank's {drifted:.2f} m. So a law of drift that is found beside this drag is no
+estimate of the tank's force, as the table of their sizes shows.
 
-**Radiation** damps motions at the waves' frequencies and is next to nothing at the natural periods: decays cannot tell it.
-**The lines'** stiffness in surge goes from {" to ".join(secants)}, secants of static catenaries; where lines drag in the decay
+**Radiation** damps motions at the waves' frequencies and is next to nothing at the natural periods. Decays cannot tell it.
+
+**The lines'** stiffness in surge goes from {" to ".join(secants)}, secants of static catenaries. Where lines drag in the decay
 its linear part is {quantity(moving[0], None, "N/m")} beside {quantity(static[0], None, "N/m")}.
 """
 
@@ -267,10 +271,11 @@ def shortcomings(results: dict[str, Any]) -> tuple[str, ...]:
             f"numerical tank: fitted with a sea, the surge decay is given up: {percent(decay[1])} of it is left with "
             f"what was found, {percent(decay[0])} where the decays are fitted alone"
         )
-    if lost:
-        short.append(f"numerical tank: there and not found: {listed([effect_in_words(*pair) for pair in lost])}")
+    for effect in dict.fromkeys(effect for effect, _ in lost):
+        names = [effect_in_words(*pair) for pair in lost if pair[0] == effect]
+        short.append(f"numerical tank: there and not found: {listed(names)}")
     if wrong := not_there(results["all"], MISSING):
         short.append(f"numerical tank: found and not there: {listed(wrong)}")
     if wrong := not_there(results["tables"], OF_TABLES):
-        short.append(f"numerical tank: found beside the tables that its forces are made of, and not there: {listed(wrong)}")
+        short.append(f"numerical tank: with its own tables as candidates. Found and not there: {listed(wrong)}")
     return tuple(short)

@@ -149,18 +149,18 @@ def run(figures: Path) -> Section:
         "Largest difference",
     )
     text = (
-        "OpenFAST v5.0.0 with the same strips, coefficients, linear mooring and no waves, released without velocity "
-        f"(`decay_*_strip` of the shared reference runs). The first {CYCLES} cycles; the largest difference of the two motions "
-        "is relative to the released amplitude.\n\n"
+        "OpenFAST v5.0.0 has the same strips, coefficients, linear mooring and no waves. The platform is released without "
+        f"velocity (`decay_*_strip` of the shared reference runs). The first {CYCLES} cycles are compared. The largest "
+        "difference of the two motions is relative to the released amplitude.\n\n"
         + table(head, rows)
         + f"\nSurge and heave agree to {100 * max(notes[d]['largest'] for d in ('surge', 'heave')):.3f} % of the release, "
-        "OpenFAST's own printing and integration error included. Pitch differs by "
-        f"{100 * notes['pitch']['largest']:.2f} %: as OpenFAST's source has it, its strip loads keep the directions of the "
-        "platform at rest, while here drag and added mass turn with it (by up to "
-        f"{notes['pitch']['released']:g} deg). Both move the points where the loads act. It is not the whole of the "
-        f"difference: after {CYCLES} cycles, where the turning no longer matters, the period still differs by "
-        f"{100 * drift(results['pitch']):+.3f} %. OpenFAST lumps the loads at nodes up to 4.3 m apart and prints six digits; "
-        "which of its steps makes it was not traced.\n"
+        "OpenFAST's own printing and integration error included.\n\n"
+        f"Pitch differs by {100 * notes['pitch']['largest']:.2f} %. One reason is the direction of the loads. According to "
+        "OpenFAST's source, its strip loads keep the directions of the platform at rest. Here drag and added mass turn with "
+        f"the platform (by up to {notes['pitch']['released']:g} deg). Both programs move the points where the loads act. This "
+        f"is not the whole difference: after {CYCLES} cycles the turning no longer matters, but the period still differs by "
+        f"{100 * drift(results['pitch']):+.3f} %. OpenFAST lumps the loads at nodes up to 4.3 m apart and prints six digits. "
+        "Which of its steps makes the rest of the difference was not traced.\n"
     )
     path = figures / "openfast-pitch.png"
     draw(results["pitch"], path)

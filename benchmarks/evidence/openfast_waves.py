@@ -228,8 +228,8 @@ def run(figures: Path) -> Section:
     if abs(energy[far]) > MOTION_GOAL:
         where = far.replace(" l", ", low").replace(" w", ", wave")
         short.append(
-            f"in waves the energy of {where} differs from OpenFAST's by {100 * energy[far]:+.1f} %, its lumping at "
-            "the waterline the likely cause, but not shown to be it"
+            f"in waves the energy of {where} differs from OpenFAST's by {100 * energy[far]:+.1f} %. OpenFAST's lumping of "
+            "loads at the waterline is the likely cause, but this was not shown"
         )
     text = words(loads, motions, seas, (of_loads(loads), of_motions(motions), of_changes(seas)))
     return Section(TITLE, text, (path,), tuple(short))

@@ -162,23 +162,28 @@ def run(figures: Path) -> Section:
     head = ("As shipped", "Two tuned", "Three tuned", "Inertia too")
     text = (
         "The built-in `volturnus-s` has the report's mass and the public WAMIT data's inertia, hydrostatics and mooring "
-        "stiffness; its added mass comes from strips. Its natural periods (s, undamped, coupled) against the report's "
-        "(NREL/TP-5000-76773, rounded to 0.001 Hz), those worked out for this project, and those of WAMIT's added mass at "
-        "each one's own frequency with WAMIT's inertia:\n\n"
+        "stiffness. Its added mass comes from strips. Its natural periods (s, undamped, coupled) are compared with:\n\n"
+        "- *Report*: the report's frequencies (NREL/TP-5000-76773, rounded to 0.001 Hz).\n"
+        "- *Worked out*: the periods worked out for this project.\n"
+        "- *WAMIT*: the periods of WAMIT's added mass, at each period's own frequency, with WAMIT's inertia.\n\n"
         + table(("Motion", "Report (Hz)", "Worked out", "WAMIT", *head), rows)
-        + f"\nAs shipped, with Table 1's coefficients, they are up to {100 * off:.1f} % off: those were tuned to another model "
-        "of this hull in a basin, with other mass and moorings. *Two tuned*: column `Ca_t` to the surge period and pontoon "
-        "`Ca_z` to the heave period, by least squares, nothing else touched; pitch is then a prediction, "
-        f"{100 * two:.2f} % off the 27.64 s worked out (goal 2 %: {'met' if two < 0.02 else 'not met'}) and all three within "
-        f"{100 * against:.2f} % of WAMIT's own. *Three tuned*: column `Ca_z`, of the ends, too: all three are within "
-        f"{100 * three:.3f} % (goal 2 %: {'met' if three < 0.02 else 'not met'}), with an end coefficient that stands for an "
-        "inertia. The 27.64 s do not follow from WAMIT's data: they ask for a pitch inertia of "
-        f"{found['inertia'][3]:.4g} kg m², about that of the report's parts ({PARTS:.4g} with the tower as a uniform rod, "
-        "nacelle and rotor as a point), where WAMIT's has 4.26e+10. *Inertia too*: with the pitch inertia "
-        f"tuned in the place of column `Ca_z`, all three are within {100 * inertia:.3f} %.\n\n"
+        + f"\n- *As shipped*, with Table 1's coefficients, the periods are up to {100 * off:.1f} % off. The "
+        "coefficients were tuned to another model of this hull in a basin, with other mass and moorings.\n"
+        "- *Two tuned*: column `Ca_t` is tuned to the surge period and pontoon `Ca_z` to the heave period, by least "
+        f"squares. Nothing else is changed. Pitch is then a prediction, {100 * two:.2f} % off the 27.64 s worked out "
+        f"(goal 2 %: {'met' if two < 0.02 else 'not met'}). All three periods are within {100 * against:.2f} % of WAMIT's.\n"
+        "- *Three tuned*: column `Ca_z`, of the ends, is tuned too. All three periods are within "
+        f"{100 * three:.3f} % (goal 2 %: {'met' if three < 0.02 else 'not met'}). The end coefficient then stands for an "
+        "inertia.\n"
+        f"- *Inertia too*: the pitch inertia is tuned in the place of column `Ca_z`. All three periods are within "
+        f"{100 * inertia:.3f} %.\n\n"
+        "The 27.64 s do not follow from WAMIT's data. They need a pitch inertia of "
+        f"{found['inertia'][3]:.4g} kg m²; WAMIT's data have 4.26e+10. The report's parts give about the inertia needed: "
+        f"{PARTS:.4g} with the tower as a uniform rod, nacelle and rotor as a point.\n\n"
         + table(("Quantity (-, kg, kg m²)", "WAMIT, zero frequency", *head), values + masses)
-        + f"\n**Balance.** Net force on the platform at its reference position: {100 * worst:.2g} % of the weight; net moment "
-        f"{100 * moment:.2g} % of the weight times 1 m (goal 0.1 %: {'met' if worst < 1e-3 else 'not met'}).\n\n"
+        + f"\n**Balance.** At its reference position the net force on the platform is {100 * worst:.2g} % of the weight "
+        f"(goal 0.1 %: {'met' if worst < 1e-3 else 'not met'}). The net moment is {100 * moment:.2g} % of the weight times "
+        "1 m.\n\n"
         f"**Volume.** The strips run from column face to column face and displace {strips:,.0f} m³; WAMIT's hull displaces "
         f"{VOLUME:,.0f} m³. The joints are the difference: the platform file declares the volume, by which the hull floats.\n\n"
         + table(
@@ -204,7 +209,6 @@ def run(figures: Path) -> Section:
     if two >= 0.02:
         short.append(
             f"with two coefficients tuned to surge and heave the pitch period is {100 * two:.2f} % off (three "
-            "meet the goal of 2 %); "
-            f"{100 * against:.2f} % off what its own mass data give with WAMIT"
+            f"meet the goal of 2 %). It is {100 * against:.2f} % off what its own mass data give with WAMIT"
         )
     return Section(TITLE, text, (), tuple(short))

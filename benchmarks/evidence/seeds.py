@@ -85,13 +85,14 @@ def conclude(results: list[dict[str, Any]], figures: Path) -> Section:
     objective = np.array([r["objective"] for r in results])
     text = (
         "The built-in campaign `volturnus-s-decays` is made by a separate program, a plain NumPy model integrated by SciPy "
-        "(`benchmarks/reference_model.py`), with the coefficients of the paper's Table 1, white sensor noise and imperfect "
-        f"releases. Here it is made with {n} seeds of noise, and each is calibrated from the platform file's values, "
-        "which are off by up to a factor of five. *Inside* means within two of its own standard deviations or 2 % of the "
-        f"truth, whichever is larger; identifiable ones only, which {identified} of the {n * len(labels)} are.\n\n"
+        "(`benchmarks/reference_model.py`). It has the coefficients of the paper's Table 1, white sensor noise and imperfect "
+        f"releases. Here it is made with {n} seeds of noise. Each campaign is calibrated from the platform file's values, "
+        "which are off by up to a factor of five. *Inside* means within two of the coefficient's own standard deviations or "
+        "2 % of the truth, whichever is larger. Only identifiable coefficients count; "
+        f"{identified} of the {n * len(labels)} are identifiable.\n\n"
         + table(("Coefficient", "True", "Bias", "Scatter", "Stated sd", "rms z", "Inside"), rows)
-        + "\nBias is the mean over the seeds less the truth; scatter is the standard deviation over the seeds, which the "
-        "stated one should match (rms z near 1). Over all coefficients and seeds "
+        + "\nBias is the mean over the seeds minus the truth. Scatter is the standard deviation over the seeds. The stated "
+        "standard deviation should match it (rms z near 1). Over all coefficients and seeds "
         f"{np.mean(np.abs(every) < 2):.1%} of the z lie within ±2 (95.4 % of a normal distribution do), and rms z is "
         f"{np.sqrt(np.mean(every**2)):.2f}.\n\n"
         f"- Coefficient by coefficient: the worst is inside in {least} of {n}; the goal is {need}. "

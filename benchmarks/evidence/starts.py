@@ -88,13 +88,14 @@ def run(count: int, processes: int, figures: Path) -> Section:
     iterations = [one["iterations"] for one in found]
     worst = spread_of(found)
     text = (
-        f"The built-in campaign calibrated from {count} random starts: every one of its eleven coefficients log-uniform within "
-        f"a factor of {FACTOR:g} of the truth, draws whose natural periods are more than {100 * OFF:.0f} % off left out. "
-        f"Below: the largest factor of any coefficient; how far off the periods of surge, heave and pitch are; J reached "
-        f"and how far it is from the best of all starts.\n\n"
+        f"{same} of {count} reach J within {100 * (SAME - 1):.0f} % of the best ({number(best)}): "
+        f"{verdict(same, count, wanted)}. Iterations: median {np.median(iterations):.0f}, at most {max(iterations)}. "
+        f"{worst}\n\n"
+        f"The built-in campaign is calibrated from {count} random starts. Each of its eleven coefficients is drawn log-uniform "
+        f"within a factor of {FACTOR:g} of the truth. Draws whose natural periods are more than {100 * OFF:.0f} % off are left "
+        "out. The table has the largest factor of any coefficient, and how far off the periods of surge, heave and pitch are. "
+        f"It has also the J reached and how far it is from the best of all starts.\n\n"
         + table(("Start", "Factor", "Surge", "Heave", "Pitch", "J", "From best", "Iterations", "s", "Converged"), rows)
-        + f"\n{same} of {count} reach J within {100 * (SAME - 1):.0f} % of the best ({number(best)}): "
-        f"{verdict(same, count, wanted)}. Iterations: median {np.median(iterations):.0f}, at most {max(iterations)}. {worst}\n"
     )
     short = [] if same == count else [f"{count - same} of {count} far starts end elsewhere"]
     if count < wanted:

@@ -84,8 +84,8 @@ def words(found: dict[str, dict[str, Any]], cut: dict[str, Any]) -> str:
             lines.append((f"{number} of {points} point{'s' if points == '2' else ''}", *periods, *change))
     pontoons = ("Elements of a pontoon", "heave period (s)", "pitch period (s)", "heave LF", "heave WF", "pitch LF", "pitch WF")
     return (
-        f"**What makes the differences.** One thing changed at a time, {SEEDS} seeds, Hs 3.1 m; a dash where the case has "
-        f"nothing to change:\n\n{table(head, rows)}\n{reasons(found)}\n"
+        f"**What makes the differences.** One thing is changed at a time, {SEEDS} seeds, Hs 3.1 m. A dash means that the case "
+        f"has nothing to change:\n\n{table(head, rows)}\n{reasons(found)}\n"
         "**Pontoon elements** (`jaxhydro.platform.convergence`, case 3, one seed): natural periods, and integrals against "
         "ten elements "
         f"of two points:\n\n{table(pontoons, lines)}\n{of_pontoons(cut)}\n"
@@ -114,29 +114,23 @@ def reasons(found: dict[str, dict[str, Any]]) -> str:
     slow, short = (found[NAMES[variant]]["periods"][0] for variant in ("base", "lines"))
     points = (
         f"""**Surge WF, case 3 over 2**: {of("base", "3/2", 1)}, the paper's {paper("3/2", 1)}. It is the step from 1 + Ca =
-        2.5
-        to MacCamy-Fuchs' 2 and below: with the tuned Ca kept in long waves it is {of("tuned", "3/2", 1)}, with stretching
-        alone {of("plain", "3/2", 1)}, with MacCamy-Fuchs alone {of("unstretched", "3/2", 1)}.""",
+        2.5 to MacCamy-Fuchs' 2 and below. With the tuned Ca kept in long waves the ratio is {of("tuned", "3/2", 1)}. With
+        stretching alone it is {of("plain", "3/2", 1)}, with MacCamy-Fuchs alone {of("unstretched", "3/2", 1)}.""",
         f"""**Surge LF, case 3 over 2**: {of("base", "3/2", 0)}, the paper's {paper("3/2", 0)}. It takes both parts of case 3:
-        stretching alone gives {of("plain", "3/2", 0)}, MacCamy-Fuchs alone {of("unstretched", "3/2", 0)}. The lag of the
-        force
-        behind the water's acceleration puts a part of it in phase with the elevation, and a wetted length that follows the
-        elevation makes a slow force of that. Without the lag the ratio is {of("no lag", "3/2", 0)} and the mean surge of
-        case 3
-        {mean("no lag")} in place of {mean("base")}; without lag and diffraction of bound waves {of("neither", "3/2", 0)}:
-        OpenFAST, which has neither, has {openfast("3/2", 0)}. Lines with which surge has {short:.0f} s instead of {slow:.0f}
-        s
-        give {of("lines", "3/2", 0)}, FOCAL's body and lines {of("focal", "3/2", 0)}. The paper's lies between with and
-        without
-        the lag.""",
+        stretching alone gives {of("plain", "3/2", 0)}, MacCamy-Fuchs alone {of("unstretched", "3/2", 0)}. The force
+        lags behind the water's acceleration, so a part of it is in phase with the elevation. A wetted length that follows the
+        elevation makes a slow force of that part. Without the lag the ratio is {of("no lag", "3/2", 0)}, and the mean surge of
+        case 3 is {mean("no lag")} in place of {mean("base")}. Without lag and diffraction of bound waves the ratio is
+        {of("neither", "3/2", 0)}. OpenFAST has neither; its ratio is {openfast("3/2", 0)}. Lines with which surge has
+        {short:.0f} s instead of {slow:.0f} s give {of("lines", "3/2", 0)}, FOCAL's body and lines {of("focal", "3/2", 0)}. The
+        paper's ratio lies between those with and without the lag.""",
         f"""**Surge LF, case 2 over 1**: {of("base", "2/1", 0)}; the paper's {paper("2/1", 0)} is anything from {rounding} by
-        the
-        rounding of its -99 %. Not reached. In case 1 what is slow comes of drag and of loads on displaced, turning strips,
-        and
-        is as large as what bound waves bring; the two do not simply add. With the flow at the rest position the ratio is
-        {of("rest", "2/1", 0)}, with strips' directions of the platform at rest {of("still", "2/1", 0)} (OpenFAST, which has
-        these: {openfast("2/1", 0)}), with both {of("both", "2/1", 0)}. Stiffer lines, FOCAL's body, lines and depth, and a
-        sharper peak do not change it much: {of("lines", "2/1", 0)}, {of("focal", "2/1", 0)}, {of("sharp", "2/1", 0)}.""",
+        the rounding of its -99 %. It is not reached. In case 1 the slow motion comes from drag and from loads on displaced,
+        turning strips. It is as large as what bound waves bring. The two do not simply add. With the flow at the rest position
+        the ratio is {of("rest", "2/1", 0)}. With strips' directions of the platform at rest it is {of("still", "2/1", 0)}
+        (OpenFAST, which has these: {openfast("2/1", 0)}). With both it is {of("both", "2/1", 0)}. Stiffer lines, FOCAL's body,
+        lines and depth, and a sharper peak do not change it much:
+        {of("lines", "2/1", 0)}, {of("focal", "2/1", 0)}, {of("sharp", "2/1", 0)}.""",
         f"""**Heave and pitch LF, case 2 over 1**: {of("base", "2/1", 2)} and {of("base", "2/1", 4)}, the paper's
         {paper("2/1", 2)}
         and {paper("2/1", 4)}. The paper's heave needs the flow at displaced positions (at rest: {of("rest", "2/1", 2)}) and
@@ -159,20 +153,15 @@ def of_pontoons(cut: dict[str, Any]) -> str:
 
     worst = max(100 * abs(row[0] / row[-1] - 1) for row in cut["2"]["integral"][2:])
     return joined(
-        f"""A lump has a pontoon's added mass but not the moment of inertia of its length, and feels the wave at one phase:
-        the
-        wave loads of heave and pitch are too large, and the pitch period is too short. From one lump to three heave WF falls
-        to
-        {ratio(3, 1, 3)} of itself and pitch WF to {ratio(3, 1, 5)}, from one to ten to {ratio(10, 1, 3)} and
-        {ratio(10, 1, 5)}:
-        the paper's {implied("4", "3", 3)[0]:.2f} and {implied("4", "3", 5)[0]:.2f} are not those of lumps at the middle of
-        pontoons
-        from column face to column face; how its one element is placed and weighted is not known here. Heave LF agrees:
-        {ratio(3, 1, 2)}, the paper's {implied("4", "3", 2)[0]:.2f}. One element of two Gauss points, what `elements: 1` is
-        without
-        `points: 1`, has the exact moment of inertia, and is within {worst:.1f} % of the finest in every column. OpenFAST's
-        cases
-        3 and 4 are alike because both have many strips per pontoon, 10 and 22."""
+        f"""A lump has a pontoon's added mass but not the moment of inertia of its length, and feels the wave at one phase. So
+        the wave loads of heave and pitch are too large, and the pitch period is too short. From one lump to three heave WF
+        falls to {ratio(3, 1, 3)} of itself and pitch WF to {ratio(3, 1, 5)}. From one lump to ten they fall to
+        {ratio(10, 1, 3)} and {ratio(10, 1, 5)}. The paper has {implied("4", "3", 3)[0]:.2f} and
+        {implied("4", "3", 5)[0]:.2f}. These are not the ratios of lumps at the middle of pontoons from column face to column
+        face. How the paper's one element is placed and weighted is not known here. Heave LF agrees: {ratio(3, 1, 2)}, the
+        paper's {implied("4", "3", 2)[0]:.2f}. One element of two Gauss points is what `elements: 1` is without `points: 1`. It
+        has the exact moment of inertia, and is within {worst:.1f} % of the finest in every column. OpenFAST's cases 3 and 4
+        are alike because both have many strips per pontoon, 10 and 22."""
     )
 
 

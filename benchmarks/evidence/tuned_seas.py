@@ -134,11 +134,11 @@ sea alone). Root mean square of ln(simulated / measured energy):
 
 {table(["Coefficients", "Parameters added", "Fitted seas", "Held out"], errors)}
 {table(["Energy of", *heads], rows)}
-Drag and damping of every sea alone (begun, and held by vague priors, where the constants ended), c0 of the law, and its
-exponent in Hs; in brackets what the energies do not determine:
+Drag and damping of every sea alone, c0 of the law, and its exponent in Hs. Every sea alone is begun, and held by vague priors,
+where the constants ended. In brackets is what the energies do not determine:
 
 {table(["Coefficient", *(f"{sea} alone" for sea in SEAS[: len(alone)]), "c0", "exponent"], values)}
-What the laws of drag add, exponents of KC and shares of the coefficient that slow motion feels:
+What the laws of drag add: exponents of KC, and shares of the coefficient that slow motion feels:
 
 {table(["Law", "Parameter", "Value"], added)}
 """
@@ -180,15 +180,19 @@ def words(results: dict[str, dict[str, Any]]) -> tuple[str, tuple[str, ...]]:
         ]
         for name, found in results.items()
     }
-    beyond = "; from ".join(f"{name}, in {', '.join(words) or 'nothing'}" for name, words in left.items())
+    beyond = "\n".join(f"- begun from {name}: {', '.join(words) or 'nothing'}" for name, words in left.items())
     said = "\n".join(f"- From {name}: {sentence}." for name, found in results.items() for sentence in found["said"][:6])
     spread = {name: (found["history"][0], found["history"][-1]) for name, found in results.items()}
-    errors = "; ".join(f"from {name} {a:.2f} to {b:.2f}" for name, (a, b) in spread.items())
+    errors = "\n".join(f"- from {name}: {a:.2f} and {b:.2f}" for name, (a, b) in spread.items())
     text = f"""
-`jaxhydro calibrate ../shared/measured/focal-c2 --start ...`: the energies of surge, heave and pitch in the low and the
-wave-frequency band of the two lower seas, twelve numbers, are fitted in their measured waves; the third sea is held out. Begun
-from {" and from ".join(STARTS.values())}; those are also the middle of the vague priors, a factor of 4.5 either way. The root
-mean square of ln(simulated / measured energy), after the first iteration and at the end: {errors}.
+The command is `jaxhydro calibrate ../shared/measured/focal-c2 --start ...`. It fits the energies of surge, heave and pitch
+in the low and the wave-frequency band. These are twelve numbers of the two lower seas, in their measured waves. The third sea
+is held out. It is begun twice: from {" and from ".join(STARTS.values())}. These starts are also the middle of the vague priors,
+a factor of 4.5 either way.
+
+The root mean square of ln(simulated / measured energy) is, after the first iteration and at the end:
+
+{errors}
 
 Error of energies, (simulated - measured) / measured, before and after:
 
@@ -200,12 +204,15 @@ What the energies tell, in the words of the package:
 
 {said}
 
-**What tuning cannot mend**: in the held-out sea more than {100 * MENDED:.0f} % is left, begun from {beyond}. The measured
-point, which seems to be at the keel (see *Measured waves*), is taken as the manifest states it, so coefficients make up for
-some of that here: they are no result about the hull until the reference is put right.
+**What tuning cannot mend**: in the held-out sea more than {100 * MENDED:.0f} % is left in these energies:
+
+{beyond}
+
+The measured point seems to be at the keel (see *Measured waves*), but is taken as the manifest states it. Coefficients make up
+for some of that here. They are no result about the hull until the reference is put right.
 """
     short = tuple(
-        f"tuned to two lower seas from {name}, the third is more than {100 * MENDED:.0f} % off in {', '.join(words)}"
+        f"tuned to the two lower seas from {name}. The third sea is more than {100 * MENDED:.0f} % off in {', '.join(words)}"
         for name, words in left.items()
         if words
     )
