@@ -66,20 +66,20 @@ def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary)
     return said
 
 
-def worsened_motions(study: Study, declared: ResidualSummary, now: ResidualSummary) -> list[str]:
-    """Motions that the model with all effects follows worse than the declared one, in words.
+def worsened_motions(study: Study, baseline: ResidualSummary, now: ResidualSummary) -> list[str]:
+    """Motions that the model with all effects follows worse than the baseline, in words.
 
     Args:
         study: The study.
-        declared: Residual of the fitted declared model.
+        baseline: Residual of the fitted baseline.
         now: Residual of the model with the effects.
     """
     said = []
-    for i in np.flatnonzero(worsening(study, declared, now) > 1):
+    for i in np.flatnonzero(worsening(study, baseline, now) > 1):
         one = study.series[i]
-        before, after = (percent(float(some.error[i]) / one.spread) for some in (declared, now))
+        before, after = (percent(float(some.error[i]) / one.spread) for some in (baseline, now))
         said.append(
-            f"{one.channel} of {one.test} is followed worse than by the declared model: {after} of the motion is left, "
+            f"{one.channel} of {one.test} is followed worse than by the baseline: {after} of the motion is left, "
             f"{before} before"
         )
     return said

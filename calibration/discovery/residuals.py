@@ -84,7 +84,7 @@ class SeaRecord(eqx.Module):
     slow: float = eqx.field(static=True)
 
     def begin(self, x: Float[Array, " p"]) -> tuple[Model, State]:
-        """The model with these parameters, and its equilibrium."""
+        """The model with these parameters, and its state at rest."""
         model = self.space.model(self.model, x)
         return model, State(equilibrium(model), jnp.zeros(6), model.rest().memory)
 

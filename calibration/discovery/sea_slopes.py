@@ -21,17 +21,11 @@ from calibration.discovery.residuals import Frame, SeaRecord
 from calibration.fitting.cores import cores
 from jaxhydro.dynamics.integrate import EXTRA_STEPS, MOTION_SIZE, grid_of, rate_of
 from jaxhydro.dynamics.model import Model
-from jaxhydro.integrators.adams_bashforth import (
-    Tangent,
-    evaluations,
-    first_evaluations,
-    path_and_states,
-    times_of,
-)
+from jaxhydro.integrators.adams_bashforth import Tangent, evaluations, first_evaluations, march, times_of
 from jaxhydro.integrators.linearised_rate import linearised_rate
 from jaxhydro.quick_jit import jit_once, quick_jit
 
-LINEARISED_AT_ONCE = 16  # evaluations, one after the other in a segment: their flow fills the cache
+LINEARISED_AT_ONCE = 16  # evaluations at a time within a segment: their flow fills the cache
 SEGMENT = 32 * LINEARISED_AT_ONCE  # evaluations that are linearised by one core
 SEGMENTS_AHEAD = 2  # of every core: linearisations take memory until the scheme has used them
 COMPARED_AT_ONCE = 16  # directions along which slopes become those of the residual together
@@ -120,8 +114,8 @@ def _simulated(
     """Motion at the ends of the steps, and the states at which the right-hand side was evaluated, in whole segments."""
     _, unravel = ravel_pytree(model.rest())
     clock = (record.times[0], record.step, count + EXTRA_STEPS)
-    options: dict[str, Any] = {"rate": rate_of(unravel), "capacity": record.steps + EXTRA_STEPS, "shown": MOTION_SIZE}
-    path, states = path_and_states((model, record.sea), state, *clock, **options)
+    capacity = record.steps + EXTRA_STEPS
+    path, states = march((model, record.sea), state, *clock, rate_of(unravel), capacity, keep=True, shown=MOTION_SIZE)
     return path, jnp.pad(states, ((0, -len(states) % SEGMENT), (0, 0)), mode="edge")
 
 

@@ -108,7 +108,31 @@ def evaluation(
     return *_advance(y, slopes, slope, add, step), number + jnp.maximum(index - len(ROWS.time) + 1, 0), state
 
 
-def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool, shown: int | None = None):
+def march(
+    driver: Any,
+    y: Array,
+    start: Array,
+    step: Array,
+    count: Array,
+    rate: Rate,
+    capacity: int,
+    keep: bool,
+    shown: int | None = None,
+) -> tuple[Array, Any]:
+    """States after 0, 1 ... `count` steps, as `forward`, and if asked for those at which the right-hand side was evaluated.
+
+    Args:
+        driver: First argument of `rate`.
+        y: First state (s,).
+        start: First time (s).
+        step: Time step (s).
+        count: Number of steps that are taken.
+        rate: Right-hand side.
+        capacity: Number of steps that there is room for.
+        keep: Whether the states of all evaluations are returned, too.
+        shown: How many entries of the states after the steps are returned; None: all.
+    """
+
     def body(index, carry):
         y, slopes, path, taken = carry
         after, newer, number, state = evaluation(driver, index, y, slopes, start, step, rate)
@@ -175,7 +199,7 @@ def forward(
     shown: int,
 ) -> Float[Array, "n m"]:
     """States after 0, 1 ... `count` steps, as `runge_kutta.forward`."""
-    return _march(driver, y, start, step, count, rate, capacity, False, shown)[0]
+    return march(driver, y, start, step, count, rate, capacity, False, shown)[0]
 
 
 def times_of(index: Int[Array, " m"], start: Float[Array, ""], step: Float[Array, ""]) -> Float[Array, " m"]:
@@ -188,7 +212,7 @@ def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int, shown: int):
     """Tangents by linearisation at all evaluations, several at once, and the scheme applied to them."""
     driver, y, start, step, count = primals
     d_driver, d_y, *_ = tangents
-    path, taken = _march(driver, y, start, step, count, rate, capacity, True, shown)
+    path, taken = march(driver, y, start, step, count, rate, capacity, True, shown)
     at = linearised_rate(rate, driver, d_driver)
     batches = -(-evaluations(capacity + 1) // BATCH)
     taken = jnp.pad(taken, ((0, batches * BATCH - taken.shape[0]), (0, 0)))
@@ -208,21 +232,6 @@ def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int, shown: int):
     carry = Tangent.begin(jnp.zeros_like(y) if d_y is None else d_y), jnp.zeros((capacity + 1 + BATCH, shown))
     _, found = jax.lax.fori_loop(0, (evaluations(count + 1) + BATCH - 1) // BATCH, batch, carry)
     return path, found[: capacity + 1]
-
-
-def path_and_states(
-    driver: Any,
-    y: Float[Array, " s"],
-    start: Float[Array, ""],
-    step: Float[Array, ""],
-    count: Int[Array, ""],
-    *,
-    rate: Rate,
-    capacity: int,
-    shown: int,
-) -> tuple[Float[Array, "n m"], Float[Array, "e s"]]:
-    """States after 0, 1 ... `count` steps, as `forward`, and those at which the right-hand side was evaluated."""
-    return _march(driver, y, start, step, count, rate, capacity, True, shown)
 
 
 def first_evaluations(steps: int) -> np.ndarray:
