@@ -33,7 +33,7 @@ class HeldOutErrors(Schema):
     """Errors of the tests marked `holdout`: sum over tests and scored motions of RMSE / standard deviation.
 
     Attributes:
-        baseline: Error of the declared model, fitted.
+        baseline: Error of the baseline.
         final: Error with the named effects.
     """
 

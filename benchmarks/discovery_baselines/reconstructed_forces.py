@@ -1,4 +1,4 @@
-"""Reconstructed forces of a campaign: what its fitted declared model lacks, by motion and test, and what they do to motions."""
+"""Reconstructed forces of a campaign: what its fitted baseline lacks, by motion and test, and what they do to motions."""
 
 import pickle
 import time
@@ -25,7 +25,7 @@ RATE_STEP = 1e-4  # m/s, rad/s, of the derivative by velocity
 
 
 class ForcedTest(NamedTuple):
-    """Forces that the fitted declared model lacks in one test.
+    """Forces that the fitted baseline lacks in one test.
 
     Attributes:
         forces: Force by motion. Its test has no sea.
@@ -110,7 +110,7 @@ def mean_damping(model: Model, test: ResampledTest, forces: Mapping[str, Recover
 
 
 def reconstruct(folder: Path) -> Reconstruction:
-    """Fit the declared model of a campaign as `diagnose` does, and reconstruct the forces that it lacks."""
+    """Fit the baseline of a campaign as `diagnose` does, and reconstruct the forces that it lacks."""
     begun = time.monotonic()
     campaign = load_campaign(folder)
     search = Search(campaign, set_up_study(campaign, options_of(campaign)), lambda *_: None)

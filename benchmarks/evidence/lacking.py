@@ -1,4 +1,4 @@
-"""Section: what `diagnose` says of measured records: what the declared models lack, errors before and after."""
+"""Section: what `diagnose` says of measured records: what the baselines lack, errors before and after."""
 
 import json
 import shutil
@@ -115,7 +115,7 @@ def run(figures: Path, processes: int) -> Section:
 
 
 def draw(name: str, path: Path) -> None:
-    """Slow surge and pitch in the sea that was held out: measured, of the declared model fitted, and with what was found."""
+    """Slow surge and pitch in the sea that was held out: measured, of the baseline fitted, and with what was found."""
     import xarray as xr
 
     from calibration.campaign.load_campaign import load_campaign

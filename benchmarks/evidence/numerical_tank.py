@@ -21,7 +21,7 @@ def one(part: str) -> dict[str, Any]:
 
 
 def run(figures: Path, processes: int) -> Section:
-    """The declared model, calibrated; diagnoses of decays and sea, of the decays alone, with tables among candidates."""
+    """The baseline, calibrated; diagnoses of decays and sea, of the decays alone, with tables among candidates."""
     if not runs.FOLDER.exists() or not runs.HYDRO.exists():
         raise Absent("OpenFAST's runs and WAMIT's files (../shared/reference) are not on this machine")
     folder = runs.written()
@@ -55,7 +55,7 @@ def known_of(law: dict[str, dict[str, float]]) -> dict[str, Any]:
 
 
 def draw(found: dict[str, Any], path: Path) -> None:
-    """Surge of the sea that was held out: measured, of the fitted declared model and with what was found; its slow part."""
+    """Surge of the sea that was held out: measured, of the fitted baseline and with what was found; its slow part."""
     from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, stack, style
 
     motions = found["motions"][runs.HELD]

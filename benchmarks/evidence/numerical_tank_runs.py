@@ -120,7 +120,7 @@ def errors_in_waves(tests: Any) -> dict[str, Any]:
 
 
 def declared() -> dict[str, Any]:
-    """Errors of the declared model, nothing fitted: decays released as OpenFAST released them, and the sea."""
+    """Errors of the baseline, nothing fitted: decays released as OpenFAST released them, and the sea."""
     import jax.numpy as jnp
 
     import jaxhydro as jh
@@ -144,7 +144,7 @@ def declared() -> dict[str, Any]:
 
 
 def calibrated() -> dict[str, Any]:
-    """The declared model calibrated to the three decays as `calibrate` does, and what it then makes of the sea."""
+    """The baseline calibrated to the three decays as `calibrate` does, and what it then makes of the sea."""
     from calibration import calibrate
     from calibration.campaign.load_campaign import load_campaign
     from calibration.residuals.measured_seas import compare

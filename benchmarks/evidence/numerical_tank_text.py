@@ -165,7 +165,7 @@ OpenFAST's runs with potential flow are given to `jaxhydro diagnose` as if they 
 - *Tank*: `decay_*_nwt` and `{SEA}` of the shared reference runs. They have radiation with memory, the full
 difference-frequency QTF, catenary lines and quadratic damping. Waves are of first order, which the campaign states.
 - *Records*: every {EVERY}th sample, with noise of 0.01 m in surge, 0.005 m in heave and 0.01 deg in pitch.
-- *Declared model*: that of OpenFAST's runs by strips. It has the same rigid body, Table 1's coefficients, linear damping and a
+- *Baseline*: that of OpenFAST's runs by strips. It has the same rigid body, Table 1's coefficients, linear damping and a
 linear mooring. Waves meet it at its mean position (`waves_at: mean`), as in the tank, where `ExctnDisp` is 0.
 - *Fit*: three decays and the sea's first half, from {TRANSIENT:.0f} to {HALF:.0f} s. The second half is held out.
 - *Mooring*: no run is a static pull-out (`{REST}` rests at zero). So the declared mooring is the tangent at rest, the stiffness

@@ -15,7 +15,7 @@ from jaxhydro.environment import DOFS
 
 RATIO_TOLERANCE = 0.15  # of a logarithm: a ratio that is a factor
 SAME_RATIO_TOLERANCE = 0.1  # of a logarithm: ratios of different motions that are one and the same
-MIN_COMMON_RATIO = math.log(2.0)  # a smaller common ratio may be the declared model's own error
+MIN_COMMON_RATIO = math.log(2.0)  # a smaller common ratio may be the model's own error
 MIN_COUPLED_MOTION = 0.05  # of the released motion, in metres of the hull: a smaller motion beside it is not the mode's alone
 MAX_PHASE_RATIO = 0.3  # imaginary over real part: a motion further out of phase is not the mode's
 UNITY_TOLERANCE = 0.25  # of a logarithm: a ratio that is 1, or 1 of the other sign
@@ -41,7 +41,7 @@ def campaign_hints(
 
     Args:
         records: the decays that are used, SI at full scale.
-        modes: natural modes of the declared model.
+        modes: natural modes of the model of the platform file.
         widths: (6,) what rotations are times in their shapes.
         length: m, its radius of gyration.
         scale: the manifest's.
@@ -67,7 +67,7 @@ def _period_hints(records: Sequence[Record], modes: Modes, scale: float) -> Iter
     ratio = float(np.median(every))
     first, dofs = records[0], " and ".join(found)
     times = f"{math.exp(ratio):.3g} times" if ratio > 0 else f"1/{math.exp(-ratio):.3g} of"
-    said = f"all measured periods, of {dofs}, are {times} the declared model's"
+    said = f"all measured periods, of {dofs}, are {times} the model's"
     for factor, why in _time_factors(scale):
         if all(abs(one - math.log(factor)) < RATIO_TOLERANCE for one in every):
             yield Hint(first, "time", f"{said}: {why}")
@@ -169,7 +169,7 @@ def _factor_in_words(one: str, two: str, values: Sequence[float], scale: float, 
     if all(value < 0 for value in values) and all(abs(math.log(-value)) < UNITY_TOLERANCE for value in values):
         keys = f"(`channels.{one}.sign` or `channels.{two}.sign`)"
         return (
-            f"{one} and {two} go together as the declared model's do, with the other sign: an axis reversed {keys}, or "
+            f"{one} and {two} go together as the model's do, with the other sign: an axis reversed {keys}, or "
             "recorded at another point (`tracked_point`)?"
         )
     turns = quantity(one) != quantity(two)
@@ -187,7 +187,7 @@ def _factor_in_words(one: str, two: str, values: Sequence[float], scale: float, 
         if all(abs(size - math.copysign(math.log(factor), sizes[0])) < UNITY_TOLERANCE for size in sizes)
     ]
     times = f"{math.exp(abs(float(np.median(sizes)))):.3g} times"
-    return f"{larger} is {times} too large beside {smaller}, by the declared model: {' or '.join(said)}?" if said else None
+    return f"{larger} is {times} too large beside {smaller}, by the model: {' or '.join(said)}?" if said else None
 
 
 def motion_hints(tests: Iterable[Mapping[str, tuple[np.ndarray, np.ndarray]]]) -> Iterator[str]:

@@ -51,7 +51,7 @@ class Campaign:
 
     @cached_property
     def model(self) -> Model:
-        """Declared model, from which calibrations begin.
+        """Model of the platform file, from which calibrations begin.
 
         Raises:
             InputError: The platform is impossible.

@@ -27,7 +27,7 @@ MAX_REST_OFFSET = 0.02  # of the radius of gyration, or rad: where a platform is
 STEEPNESS_LIMITS = (1 / 7, 1.0)  # height over length: beyond 1/7 no wave stands (Michell 1893, Phil. Mag. 36)
 FULL_SCALE, UNIT_OR_SCALE = "(full scale)", "a unit, or the scale?"
 MAX_NOISE_SHARE = 0.5  # of a motion's deviation
-EXPECTED_AGREEMENT = "records that agree with the manifest and the declared model"
+EXPECTED_AGREEMENT = "records that agree with the manifest and the platform file"
 
 
 class CampaignFinding(Finding):
@@ -35,8 +35,14 @@ class CampaignFinding(Finding):
 
 
 def check_plausible(records: Sequence[Record], model: Model, zeroed: bool, scale: float = 1.0) -> tuple[Finding, ...]:
-    """Findings on the records that are used, at full scale, against the declared model. `zeroed`: a zero was taken off them;
-    `scale` is the manifest's."""
+    """Findings on the records that are used, at full scale, against the platform file's model.
+
+    Args:
+        records: Records of the campaign.
+        model: Model of the platform file.
+        zeroed: Whether a zero was subtracted from the records.
+        scale: The manifest's scale.
+    """
     used = [record for record in records if record.use != "ignore"]
     decays = [record for record in used if record.kind == "decay"]
     length, gravity = characteristic_length(model), float(model.environment.gravity)
@@ -85,7 +91,7 @@ def _record_findings(
         period = dominant_period(record.time, record.values[name])
         if period is not None:
             why, by_scale = _period_reason(period / own, scale)
-            message = f"a period of {period:.3g} s {FULL_SCALE}, the declared model's is {own:.3g} s: {why}"
+            message = f"a period of {period:.3g} s {FULL_SCALE}, the model's is {own:.3g} s: {why}"
             limits, ratio = (
                 (WRONG_PERIOD_RATIO if told else 1.0 if by_scale else UNUSUAL_PERIOD_RATIO, WRONG_PERIOD_RATIO),
                 max(period / own, own / period),

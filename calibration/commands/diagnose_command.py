@@ -74,7 +74,7 @@ def mark_unfinished(partial: Diagnosis) -> Diagnosis:
 def show_diagnosis(saved: DiagnosisFile, notes: list[str]) -> None:
     """Print what was found, errors before and after, what was rejected, and the verdict last, where one looks first."""
     if (rows := tables.anatomy(saved))[1]:
-        table("What the declared model, fitted, leaves over", *rows, left=4)
+        table("What the fitted baseline leaves over", *rows, left=4)
     table("Coefficients, fitted before and after", *tables.coefficients(saved))
     if (rows := tables.nearly_known(saved))[1]:
         table(tables.VARIED, *rows)

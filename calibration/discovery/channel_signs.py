@@ -1,7 +1,7 @@
 """Channels recorded with the wrong sign, found from motions in waves.
 
-Measured motions are compared with the declared model at wave frequencies, before anything is fitted in waves. There motions
-follow from the waves by first-order theory. A phase of 180 degrees in every test has no physical cause.
+Measured motions are compared with the platform file's model at wave frequencies, before anything is fitted in waves.
+There motions follow from the waves by first-order theory. A phase of 180 degrees in every test has no physical cause.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ MIN_MOTION_OVER_NOISE = 5.0  # of a motion that is compared
 
 
 class SignComparison(NamedTuple):
-    """Comparison of a measured motion with the declared model in one test, at wave frequencies.
+    """Comparison of a measured motion with the model of the platform file in one test, at wave frequencies.
 
     Attributes:
         channel: The motion.

@@ -24,9 +24,9 @@ class Outcome(StrEnum):
     """Outcome of a diagnosis.
 
     Attributes:
-        FOUND: The declared model lacks effects, which are named.
-        NOTHING_MISSING: The records show nothing that the declared model lacks.
-        UNEXPLAINED: The declared model lacks something that no effect explains; effects, if any, are all in doubt.
+        FOUND: The baseline lacks effects, which are named.
+        NOTHING_MISSING: The records show nothing that the baseline lacks.
+        UNEXPLAINED: The baseline lacks something that no effect explains; effects, if any, are all in doubt.
     """
 
     FOUND = "found"
@@ -126,12 +126,12 @@ class Prediction:
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
-    """Result of a diagnosis: the declared model, the effects that it lacks, and the model with them.
+    """Result of a diagnosis: the baseline, the effects that it lacks, and the model with them.
 
     Attributes:
         campaign: Name of the campaign.
         verdict: Outcome of the diagnosis.
-        baseline: Fit of the declared model.
+        baseline: Fit of the baseline.
         augmented: Fit of the model with the effects found.
         effects: The effects found.
         rejected: Effects that were tried and rejected.

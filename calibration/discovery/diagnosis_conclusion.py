@@ -44,7 +44,7 @@ def conclude(
     Args:
         campaign: The campaign.
         search: The search.
-        before: Fit of the declared model.
+        before: Fit of the baseline.
         after: Fit of the last model.
         notes: Notes to report, in words.
         seconds: Computing time (s).

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def augmented_model(search: Search, state: FitState) -> Model:
-    """The declared model with the effects found, all parameters as fitted."""
+    """The baseline with the effects found, all parameters as fitted."""
     active = search.active(state.chosen)
     moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
     values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}

@@ -26,7 +26,7 @@ MAX_DECAY_RESIDUAL = 0.1  # of a decay's motion, that a joint fit may leave
 MAX_RESIDUAL_RATIO = 3.0  # of a joint fit's residual to that of a fit to decays alone
 MAX_RELEASE_SPEED = 0.2  # of a decay's first sample, over release times natural frequency
 MEMORY_EFFECTS = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
-# of the held-out error to that of the declared model. True effects increase it to 1.01 times at most in the campaigns of
+# of the held-out error to that of the baseline. True effects increase it to 1.01 times at most in the campaigns of
 # docs/validation.md, since likelihoods are not errors
 MAX_HELD_OUT_RATIO = 1.05
 MAX_COEFFICIENT_RATIO = 3.0  # of a coefficient to its declared value, or the inverse
@@ -123,7 +123,7 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
 
 
 def held_out_error_rose(before: float | None, after: float | None) -> bool:
-    """Whether the held-out objective clearly exceeds that of the declared model; None: no such test."""
+    """Whether the held-out objective clearly exceeds that of the baseline; None: no such test."""
     return before is not None and after is not None and after > MAX_HELD_OUT_RATIO * before
 
 

@@ -24,7 +24,7 @@ class RefusalKind(StrEnum):
     INSIGNIFICANT = "insignificant"  # parameters over their standard deviations
     NEGLIGIBLE = "negligible"
     WORSE_MOTION = "worse_motion"  # objective of the motion `name`, or "" for all, without and with the effect
-    WORSE_TEST = "worse_test"  # error of the motion of a test `name` over the motion, in the declared model and with the effect
+    WORSE_TEST = "worse_test"  # error of the motion of a test `name` over the motion, in the baseline and with the effect
     IMPROBABLE = "improbable"  # posterior probability
     UNSETTLED = "unsettled"  # posterior probability, which is high; most rounds, or a smaller set, do without the effect
 

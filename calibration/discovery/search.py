@@ -1,4 +1,4 @@
-"""Search for missing effects: what it has found so far, the declared model's fit, mass properties."""
+"""Search for missing effects: what it has found so far, the baseline's fit, mass properties."""
 
 import math
 from typing import NamedTuple
@@ -76,16 +76,16 @@ class Search(EffectFits):
         self.shortlist: list[ListedVariant] = []
 
     def fit_baseline(self) -> FitState:
-        """Fit the declared model."""
-        self.say("calibrating the declared model", 0.03)
+        """Fit the baseline."""
+        self.say("fitting the baseline", 0.03)
         place = self.start
         self.anchor(place.x)
         if self.study.decays is not None and self.study.seas:
             self.alone = ResidualSummary.of(self.study, self.study.residual(place))
         if self.study.seas:
             self.weigh_by_expected(place)
-        self.say("declared model: slopes", 0.1)
-        return self.refit(self.study.linearise(place, self.base), (), "declared model", 0.15)
+        self.say("baseline: slopes", 0.1)
+        return self.refit(self.study.linearise(place, self.base), (), "baseline", 0.15)
 
     def likelihood_gain(self, before: FitState, after: FitState) -> float:
         """Decrease of -2 ln L of the fitted tests from one state to another."""

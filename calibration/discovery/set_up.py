@@ -49,8 +49,8 @@ class StudySetup(NamedTuple):
     Attributes:
         study: The study.
         candidates: Candidate effects.
-        declared: The declared model.
-        base: Labels of the declared model's free coefficients.
+        declared: The model of the platform file.
+        base: Labels of the model's free coefficients.
         nuisances: Names of nearly known parameters, free within their priors.
         prior: Priors of all directions.
         motions: The motions that the tests are about.

@@ -117,7 +117,7 @@ def labels_of(campaign: Campaign, declared: Model, moved: Sequence[str], free: S
 
     Args:
         campaign: The campaign.
-        declared: The declared model.
+        declared: The model before the fit.
         moved: Released motions, whose parameters are free by default.
         free: Labels and patterns in place of the manifest's; None: the manifest's.
 
@@ -161,13 +161,13 @@ def conclude(campaign: Campaign, declared: Model, fit: Fit, seconds: float) -> C
 
 
 def held_out(campaign: Campaign, declared: Model, model: Model) -> list[TestFit]:
-    """Decays marked `holdout`, simulated with the calibrated and with the declared model.
+    """Decays marked `holdout`, simulated with the model after and before the fit.
 
     Releases and offsets of sensors are fitted to each record; coefficients stay.
 
     Args:
         campaign: The campaign.
-        declared: The declared model.
+        declared: The model before the fit.
         model: The calibrated model.
     """
     held = [record for record in campaign.used("holdout") if record.kind == "decay"]

@@ -131,7 +131,7 @@ def records_not_followed(tests: Sequence[TestFit], declared: Model) -> list[str]
     return [
         f"the model does not follow {listed([test.id for test in some])}: the RMSE is "
         f"{percent_span([test.main.relative for test in some])} of the motion's standard deviation. Period in {channel}: "
-        f"measured {_periods(some)}, declared model {modes.of(channel):.3g} s. Check scale, units, mass and stiffness"
+        f"measured {_periods(some)}, of the platform file {modes.of(channel):.3g} s. Check scale, units, mass and stiffness"
         for channel, some in lost.items()
     ]
 

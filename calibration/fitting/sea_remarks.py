@@ -62,6 +62,6 @@ def _held_out(tests: Sequence[TestFit]) -> Iterator[str]:
         before, after = map(error_of_energies, zip(*pairs, strict=True))
         if after > WORSE_RATIO * before:
             yield (
-                f"held out, {test.id} is followed worse than by the declared model: error of ln(energy) {number(before, 2)} "
+                f"held out, {test.id} is followed worse than before the fit: error of ln(energy) {number(before, 2)} "
                 f"before, {number(after, 2)} after"
             )

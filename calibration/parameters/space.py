@@ -81,7 +81,7 @@ def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
     only where it is asked for.
 
     Args:
-        model: The declared model.
+        model: The model of the platform file.
         released: The degrees of freedom.
     """
     digits = {str(DOFS.index(dof) + 1) for dof in released}

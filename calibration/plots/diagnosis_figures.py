@@ -28,7 +28,7 @@ SHORT_EXCERPT = 600.0  # of the other motions
 
 
 def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, str, Figure]]:
-    """File name, caption and figure, one after the other; `compared` is the augmented calibration with the declared model's
+    """File name, caption and figure, one after the other; `compared` is the augmented calibration with the baseline's
     motions as those before. Call within `plots.style.style()`."""
     rows = compared_series(compared)
     if rows:

@@ -1,4 +1,4 @@
-"""Tables and verdict of `jaxhydro check`: what a campaign's records hold, and whether the declared model fits them."""
+"""Tables and verdict of `jaxhydro check`: what a campaign's records hold, and whether the model fits them."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -25,13 +25,13 @@ MAX_PERIOD_DIFFERENCE = 0.2  # of the measured period: a fit of added mass seldo
 
 
 class PeriodComparison(NamedTuple):
-    """Natural period of one motion, measured in decays and of the declared model.
+    """Natural period of one motion, measured in decays and of the model.
 
     Attributes:
         motion: The motion.
         tests: Number of decays with a clear period.
         measured: Their median period (s).
-        declared: Period of the declared model (s).
+        declared: Period of the model (s).
     """
 
     motion: str
@@ -50,7 +50,7 @@ def compare_periods(records: Sequence[Record], modes: Modes) -> list[PeriodCompa
 
     Args:
         records: The records.
-        modes: Natural modes of the declared model.
+        modes: Natural modes of the model.
     """
     found: dict[str, list[float]] = {}
     for record in records:
@@ -91,7 +91,7 @@ def periods(compared: Sequence[PeriodComparison]) -> Rows:
         (one.motion, str(one.tests), number(one.measured, 3), number(one.declared, 3), signed_percent(one.difference))
         for one in compared
     ]
-    return ("Motion", "Decays", "Measured (s)", "Declared model (s)", "Difference"), rows
+    return ("Motion", "Decays", "Measured (s)", "Model (s)", "Difference"), rows
 
 
 def doubts(campaign: Campaign, compared: Sequence[PeriodComparison]) -> Iterator[str]:
@@ -106,10 +106,10 @@ def doubts(campaign: Campaign, compared: Sequence[PeriodComparison]) -> Iterator
     yield from _at_rest(campaign)
     for one in compared:
         if math.isnan(one.declared):
-            yield f"{one.motion}: the declared model has no natural period in it, measured {number(one.measured, 3)} s"
+            yield f"{one.motion}: the model has no natural period in it, measured {number(one.measured, 3)} s"
         elif abs(one.difference) > MAX_PERIOD_DIFFERENCE:
             yield (
-                f"{one.motion}: the declared model's natural period is {number(one.declared, 3)} s, measured "
+                f"{one.motion}: the model's natural period is {number(one.declared, 3)} s, measured "
                 f"{number(one.measured, 3)} s (mass, mooring, unit or `scale`)"
             )
 

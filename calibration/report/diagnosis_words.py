@@ -11,7 +11,7 @@ from calibration.results.diagnosis_file import DiagnosisFile, Evidence, FoundEff
 from calibration.vocabulary import UNDETERMINED
 
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
-UNFINISHED = "The search did not come to its end: until then nothing was found that the declared model lacks."
+UNFINISHED = "The search did not come to its end: until then nothing was found that the model lacks."
 WHERE = "in the motion and at the frequencies where the error falls most"
 SECOND_ORDER = "second_order"  # a doubt in files of earlier versions, which chose the order of the waves themselves
 NEAR_ZERO_DEVIATIONS = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
@@ -67,12 +67,12 @@ def verdict_sentence(saved: DiagnosisFile) -> str:
     if missing.verdict == Outcome.FOUND:
         more = f" {capitalised(doubted)} may stand for something else (see below)." if doubted else ""
         until = "" if saved.complete else " This is what was found until the search was stopped."
-        return f"The declared model lacks {names}: {error_reduction(saved)}.{more}{until}"
+        return f"The model lacks {names}: {error_reduction(saved)}.{more}{until}"
     if not saved.converged and not named:
         return UNFINISHED
     if missing.verdict == Outcome.NOTHING_MISSING:
-        return "These records show nothing that the declared model lacks: no effect that was tried survives."
-    lacks = "The declared model lacks something, and no effect that was tried explains it"
+        return "These records show nothing that the model lacks: no effect that was tried survives."
+    lacks = "The model lacks something, and no effect that was tried explains it"
     return f"{lacks}; {doubted} may stand for it: {error_reduction(saved)}." if doubted else f"{lacks}."
 
 

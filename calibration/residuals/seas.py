@@ -41,7 +41,7 @@ CELLS_PER_BAND, MIN_CELL_CYCLES, MIN_ENERGY_SHARE = (
     10.0,
     0.01,
 )  # of a spectrum: cells of a band, their least width times the record, least energy
-# m, for a hull of the size of VolturnUS-S: that a motion may go beyond that of the declared model in one prepared sea
+# m, for a hull of the size of VolturnUS-S: that a motion may go beyond that of the baseline in one prepared sea
 SEA_MARGIN = 30.0
 
 

@@ -125,7 +125,7 @@ class Unexplained(ResultModel):
 
 
 class MissingEffects(ResultModel):
-    """What the declared model lacks."""
+    """What the baseline lacks."""
 
     verdict: Outcome
     effects: list[FoundEffect]
@@ -186,7 +186,7 @@ class Residual(ResultModel):
 
 
 class Anatomy(ResultModel):
-    """Residuals of the fitted declared model, and of the model with the effects found."""
+    """Residuals of the fitted baseline, and of the model with the effects found."""
 
     before: list[Residual] = Field(default_factory=list)
     after: list[Residual] = Field(default_factory=list)
@@ -223,7 +223,7 @@ class DiagnosisFile(CalibrationFile):
 
     Attributes:
         complete: False where the search was stopped before its end.
-        missing: What the declared model lacks.
+        missing: What the baseline lacks.
         augmented: The calibrated model with the effects that were found.
         scores: Scores of all candidates in all rounds.
         anatomy: Residuals before and after.

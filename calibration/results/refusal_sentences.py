@@ -41,7 +41,7 @@ def describe_refusal(one: Refusal) -> str:
             tests = where if one.compared == ComparedData.ALL else f"the {where}"
             return f"{what} followed worse with it ({its} in {tests}: {values[0]:.3f} without it, {values[1]:.3f} with it)"
         case RefusalKind.WORSE_TEST:
-            left = f"{100 * values[1]:.1f} % of the motion is left with it, {100 * values[0]:.1f} % in the declared model"
+            left = f"{100 * values[1]:.1f} % of the motion is left with it, {100 * values[0]:.1f} % in the baseline"
             return f"{one.name} is followed worse with it ({left})"
         case RefusalKind.UNSETTLED:
             return f"not settled: {100 * values[0]:.0f} % probable at the end, but most rounds or a smaller set do without it"

@@ -72,7 +72,7 @@ def motions(diagnosis: Diagnosis, compared: Calibration) -> xr.Dataset:
     motion = dataset(compared)
     motion.attrs["title"] = f"Diagnosis of {diagnosis.campaign}"
     motion["simulated"].attrs["long_name"] = "motion of the model with what was found missing"
-    motion["before"].attrs["long_name"] = "motion of the declared model, calibrated"
+    motion["before"].attrs["long_name"] = "motion of the baseline"
     return with_bands(motion, diagnosis) if diagnosis.predictions else motion
 
 
@@ -251,7 +251,7 @@ def _residual(one: Finding) -> Residual:
 
 
 def paired(diagnosis: Diagnosis) -> Calibration:
-    """The augmented model's calibration, the calibrated declared model's motion and band errors in it as those before."""
+    """The augmented model's calibration, the baseline's motion and band errors in it as those before."""
     first = {test.id: test for test in diagnosis.baseline.tests}
     tests = tuple(_paired(first[test.id], test) if test.id in first else test for test in diagnosis.augmented.tests)
     return replace(diagnosis.augmented, tests=tests)
@@ -269,7 +269,7 @@ def _paired(before: TestFit, after: TestFit) -> TestFit:
 
 
 def _motions(before: Iterable[Series], after: Iterable[Series]) -> Iterable[tuple[str, np.ndarray]]:
-    """The declared model's motions on the sensor offsets of the augmented fit, so that residuals stay what they were."""
+    """The baseline's motions on the sensor offsets of the augmented fit, so that residuals stay what they were."""
     there = {series.channel: series for series in before}
     for series in after:
         other = there.get(series.channel)

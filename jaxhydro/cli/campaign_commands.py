@@ -98,10 +98,11 @@ def diagnose(
 ) -> None:
     """Fit a platform's coefficients, then find what the model lacks: an effect with its name, its size and the evidence.
 
-    The declared model is fitted to the tests marked `fit`. All effects that could be missing are then compared, alone and
-    together. Each effect of the most probable set is taken out in turn. It stays only where the tests marked `holdout` ask for
-    it; where there are none, blocks of the fitted ones are left out in turn. Nothing in the campaign has to name an effect. The
-    answer may be that nothing is missing, or that something is and none of the known effects explains it.
+    The model is first fitted to the tests marked `fit`: this is the baseline. All effects that could be missing are then
+    compared, alone and together. Each effect of the most probable set is taken out in turn. It stays only where the tests
+    marked `holdout` ask for it; where there are none, blocks of the fitted ones are left out in turn. Nothing in the campaign
+    has to name an effect. The answer may be that nothing is missing, or that something is and none of the known effects
+    explains it.
     """
     campaign_file(campaign)
     out = options.results_folder(out, "diagnosis.json", campaign)

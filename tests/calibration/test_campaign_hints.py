@@ -42,7 +42,7 @@ def test_nothing_is_told_of_a_sound_campaign(campaign) -> None:
 
 @pytest.mark.parametrize("off", [0.6, 0.8, 1.25, 1.7])
 def test_a_model_that_is_off_is_no_mistake(campaign, off) -> None:
-    """Periods and couplings that the declared model misses are what a calibration is for."""
+    """Periods and couplings that the model misses are what a calibration is for."""
     assert broken(campaign, time=off) == [] == broken(campaign, surge=off) == broken(campaign, angle=off)
 
 
@@ -56,8 +56,8 @@ def test_a_model_that_is_off_is_no_mistake(campaign, off) -> None:
         ({"heave": 1e3}, "heave: all releases in heave are as if 1000"),
         ({"heave": 1e-3}, "heave: all releases in heave are as if 1000 times too small: millimetres and metres"),
         ({"surge": 1e3}, "surge: all releases in surge are as if 1000 times too large: millimetres and metres"),
-        ({"time": 1e3}, "1.04e+03 times the declared model's: `channels.time.unit`: milliseconds and seconds mixed up?"),
-        ({"time": 1 / 60}, "1/57.7 of the declared model's: `channels.time.unit`: minutes and seconds mixed up?"),
+        ({"time": 1e3}, "1.04e+03 times the model's: `channels.time.unit`: milliseconds and seconds mixed up?"),
+        ({"time": 1 / 60}, "1/57.7 of the model's: `channels.time.unit`: minutes and seconds mixed up?"),
         ({"length": 1 / SCALE, "time": SCALE**-0.5}, "as those of a model at 1:46.2 would be: is `scale` left out?"),
         ({"time": SCALE**-0.5}, "as those of a model at 1:46.2 would be: is `scale` left out?"),
         ({"scale": SCALE, "length": SCALE, "time": SCALE**0.5}, "are the records at full scale already (then `scale` is 1)"),

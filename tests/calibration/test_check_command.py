@@ -44,7 +44,7 @@ def test_a_sound_campaign_is_said_to_be_sound(demo):
 
 def test_a_period_far_off_is_named(demo):
     said = list(doubts(demo, [PeriodComparison("pitch", 3, 26.4, 37.0), PeriodComparison("heave", 3, 18.8, 18.1)]))
-    assert len(said) == 1 and said[0].startswith("pitch: the declared model's natural period is 37.0 s, measured 26.4 s")
+    assert len(said) == 1 and said[0].startswith("pitch: the model's natural period is 37.0 s, measured 26.4 s")
     assert "no natural period" in next(doubts(demo, [PeriodComparison("sway", 1, 130.0, math.nan)]))
 
 
@@ -66,7 +66,7 @@ def test_command_says_that_periods_are_off(tmp_path):
     (folder / "platform.yaml").write_text(text.replace("stiffness: 45000.0", "stiffness: 20000.0"))
     result = RUNNER.invoke(cli.app, ["check", str(folder)], env={"COLUMNS": "160"})
     assert result.exit_code == 0, result.output
-    assert "surge: the declared model's natural period is" in " ".join(result.output.split())
+    assert "surge: the model's natural period is" in " ".join(result.output.split())
 
 
 def test_a_platform_out_of_balance_or_not_one_s_own_is_named(tmp_path):

@@ -212,7 +212,7 @@ def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
 
 @pytest.mark.validate
 def test_seas_are_as_the_campaign_states(tmp_path: Path) -> None:
-    """Bound waves at some differences of frequencies, by their flow at the origin: the declared model follows such records to
+    """Bound waves at some differences of frequencies, by their flow at the origin: the model follows such records to
     the noise, and so does a simulation of what a diagnosis has written."""
     (tmp_path / "platform.yaml").write_text(re.sub("excitation: .*\n", "", PLATFORM))
     model = jh.load_model(tmp_path / "platform.yaml")

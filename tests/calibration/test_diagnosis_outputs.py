@@ -92,7 +92,7 @@ def test_the_series_before_have_the_residual_they_had(result: Diagnosis, written
             np.testing.assert_allclose(here.simulated[:n], factor * after.main.simulated, atol=1e-12)
             left = factor * (before.main.measured - before.main.simulated)
             np.testing.assert_allclose(here.measured[:n] - here.before[:n], left, atol=1e-12)
-        assert data.attrs["title"] == "Diagnosis of basin" and "declared model" in data.before.attrs["long_name"]
+        assert data.attrs["title"] == "Diagnosis of basin" and "baseline" in data.before.attrs["long_name"]
     test = result.baseline.tests[0]
     short = replace(test, series=tuple(replace(s, measured=s.measured[1:], simulated=s.simulated[1:]) for s in test.series))
     odd = replace(result, baseline=replace(result.baseline, tests=(short, *result.baseline.tests[2:])))
@@ -122,8 +122,8 @@ def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> 
     doubtful = replace(result.effects[0], indistinguishable=(), in_doubt="amplitude_dependent_drag")
     other = replace(result.effects[0], effect="current", degree_of_freedom=None, indistinguishable=())
     for effects, verdict, start in (
-        ((doubtful,), "unexplained", "The declared model lacks something, and no effect"),
-        ((other, doubtful), "found", "The declared model lacks a current: "),
+        ((doubtful,), "unexplained", "The model lacks something, and no effect"),
+        ((other, doubtful), "found", "The model lacks a current: "),
     ):
         write_diagnosis(replace(result, verdict=verdict, effects=effects), tmp_path / verdict, figures=False)
         saved = read_diagnosis(tmp_path / verdict)
@@ -195,7 +195,7 @@ def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_pa
     """Nothing missing; no tests at all; numbers that are none; effects twice, of nothing that moves; many rounds."""
     read_diagnosis(write_diagnosis(nothing(), tmp_path / "a"))
     page = Page(write_report(tmp_path / "a").read_text())
-    assert "nothing that the declared model lacks" in page.text and "No effect." in page.text
+    assert "nothing that the model lacks" in page.text and "No effect." in page.text
     assert json.loads((tmp_path / "a" / "diagnosis.json").read_text())["missing"]["unexplained"]["share"] == 0.0
     less = {key: replace(getattr(result, key), tests=()) for key in ("baseline", "augmented")} | {"predictions": ()}
     write_diagnosis(replace(nothing(verdict="unexplained", signature="at 0.01 Hz, as Hs^2"), **less), tmp_path / "b")
@@ -297,7 +297,7 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
     assert all(link.startswith("data:image/png;base64,") for link in page.links) and "http" not in page.text
     assert not {"link", "iframe", "object"} & set(page.tags) and page.tags.count("script") in (0, 3)
     told = (
-        "The declared model lacks Coulomb friction in surge",
+        "The model lacks Coulomb friction in surge",
         "falls by 69 %",
         "force (81.0 ± 2.1) kN",
         "Very strong evidence",

@@ -114,7 +114,7 @@ def test_data_sets_are_those_of_the_files(result: Calibration, tmp_path) -> None
     xr.testing.assert_identical(result.to_xarray(), dataset(result))
     diagnosis = fake_diagnosis()
     found = diagnosis.to_xarray()
-    assert found["before"].attrs["long_name"] == "motion of the declared model, calibrated" and "half_width" in found
+    assert found["before"].attrs["long_name"] == "motion of the baseline" and "half_width" in found
     with xr.open_dataset(write_diagnosis(diagnosis, tmp_path, figures=False) / "simulated.nc", engine="h5netcdf") as written:
         assert set(written.variables) == set(found.variables)
         np.testing.assert_allclose(written["simulated"], found["simulated"])

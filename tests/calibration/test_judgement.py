@@ -321,7 +321,7 @@ def test_an_effect_that_makes_a_test_worse_than_declared_is_refused(worse, refus
     assert [name for name, one in search.found.items() if one.verdict.refused] == ([refused] if refused else [])
     if refused:
         reason = describe_refusal(search.found["drift"].verdict.refused)
-        left_over = "50.0 % of the motion is left with it, 10.0 % in the declared model"
+        left_over = "50.0 % of the motion is left with it, 10.0 % in the baseline"
         assert reason == f"surge of t is followed worse with it ({left_over})"
 
 

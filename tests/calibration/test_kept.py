@@ -33,7 +33,7 @@ class Killed(Exception):
 
 
 def searched(campaign):
-    """A search with the declared model fitted, as the states that were kept."""
+    """A search with the model fitted, as the states that were kept."""
     search = Search(campaign, set_up_study(campaign, Options()), lambda *_: None)
     return search, search.fit_baseline()
 

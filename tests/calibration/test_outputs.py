@@ -490,7 +490,7 @@ def test_decays_of_one_motion_that_are_not_followed_make_one_note(result: Calibr
     lost = [replace(first, id=f"surge-{i}", series=still) for i in (1, 2)]
     (note,) = records_not_followed([*lost, heave, replace(lost[0], use="holdout")], result.model)
     assert note.startswith("the model does not follow surge-1 and surge-2: the RMSE is 100 % of the motion's standard")
-    assert re.search(r"Period in surge: measured 13\d s, declared model 1\d\d s\. Check scale", note)
+    assert re.search(r"Period in surge: measured 13\d s, of the platform file 1\d\d s\. Check scale", note)
     assert records_not_followed([first, heave], result.model) == []
 
 

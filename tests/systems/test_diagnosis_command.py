@@ -78,7 +78,7 @@ def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path
     for said in (
         "9 tests fitted",
         "reading the records scoring: iteration 1, -2 ln L = 812",
-        "The declared model lacks Coulomb friction in surge",
+        "The model lacks Coulomb friction in surge",
         "(81.0 ± 2.1) kN",
         "very strong",
         "hysteresis in surge improbable (2 %)",
@@ -141,7 +141,7 @@ def test_a_stopped_search_does_not_say_that_nothing_is_missing(searching, result
         saved = read_diagnosis(tmp_path / verdict)
         assert not saved.complete and saved.missing.verdict == ("found" if verdict == "found" else "unexplained")
         ended = "found until the search was stopped" if verdict == "found" else "The search did not come to its end"
-        assert ended in text and "nothing that the declared model lacks" not in text
+        assert ended in text and "nothing that the model lacks" not in text
     searching["it"] = result
     run("diagnose", DEMO, "--no-figures", "--out", tmp_path / "whole")
     assert read_diagnosis(tmp_path / "whole").complete

@@ -58,7 +58,7 @@ class JointSearch(Search):
     def select(self, state: FitState, number: int, required: frozenset[str]) -> Subset:
         """Linearise a state along all candidates, and select.
 
-        The laboratory comes first: where mistakes of it are among the effects that the declared model lacks, those alone are
+        The laboratory comes first: where mistakes of it are among the effects that the baseline lacks, those alone are
         selected, jointly. Real seas pull any law of physics to wherever it stands for them.
 
         Args:
@@ -191,7 +191,7 @@ class JointSearch(Search):
         before it have.
 
         Args:
-            states: The fitted declared model, and what earlier rounds reached.
+            states: The fitted baseline, and what earlier rounds reached.
             reach: Called with the state after every round.
 
         Returns:
@@ -223,7 +223,7 @@ class JointSearch(Search):
         """The model with an oscillator that splits a mode of a decay, far from where slopes lead; None without one.
 
         Args:
-            baseline: The fitted declared model.
+            baseline: The fitted baseline.
         """
         place = self.with_starting_values(baseline.look.place, self.setup.base)
         base, width = self.study.index(self.setup.base), self.setup.prior.width

@@ -34,7 +34,7 @@ class VerifiedSearch(JointSearch):
         convergence. The model that is kept follows no motion worse than the declared one, if an effect is the reason.
 
         Args:
-            baseline: The fitted declared model.
+            baseline: The fitted baseline.
             state: The last state of the search.
         """
         state = self.without_unsupported(baseline, state)
@@ -64,7 +64,7 @@ class VerifiedSearch(JointSearch):
         """A state without the effects that held-out tests, as the linear model predicts them, do not support.
 
         Args:
-            baseline: The fitted declared model.
+            baseline: The fitted baseline.
             state: The last state of the search.
         """
         study = self.study
@@ -84,10 +84,10 @@ class VerifiedSearch(JointSearch):
         return self.refit_all(self.fit_subset(state, columns, subset, "verification", END))
 
     def refuse_worsening(self, baseline: FitState, state: FitState) -> None:
-        """Refuse the effect that makes a motion of a test be followed worse than in the declared model, if there is one.
+        """Refuse the effect that makes a motion of a test be followed worse than in the baseline, if there is one.
 
         Args:
-            baseline: The fitted declared model.
+            baseline: The fitted baseline.
             state: The fitted model, every effect's evidence in `found`.
         """
         worse = worsening(self.study, baseline.left, state.left)
@@ -106,7 +106,7 @@ class VerifiedSearch(JointSearch):
         """Evidence of effects in a model: by simulation without each, and tests left out in turn in the linear model.
 
         Args:
-            baseline: The fitted declared model.
+            baseline: The fitted baseline.
             state: The fitted model.
             tried: The effects.
 
