@@ -2,13 +2,16 @@
 
 XLA runs a loop on one core. The motion is simulated first. Then the right-hand side is linearised at the states that the scheme
 evaluated, which takes most of the time: in segments, side by side. The scheme itself is applied to the slopes in order.
+
+Candidates at other values of their shapes move nothing while they are neutral. The acceleration's slopes by the state are then
+those of before. What is left to linearise are the candidates' own loads.
 """
 
 from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future
 from operator import itemgetter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import equinox as eqx
 import jax
@@ -29,6 +32,9 @@ LINEARISED_AT_ONCE = 16  # evaluations at a time within a segment: their flow fi
 SEGMENT = 32 * LINEARISED_AT_ONCE  # evaluations that are linearised by one core
 SEGMENTS_AHEAD = 2  # of every core: linearisations take memory until the scheme has used them
 COMPARED_AT_ONCE = 16  # directions along which slopes become those of the residual together
+ACCELERATIONS = slice(MOTION_SIZE // 2, MOTION_SIZE)  # of a right-hand side
+
+Accelerations: TypeAlias = list[Array]  # by segment: slopes of the acceleration by the state at the evaluations (e, 6, s)
 
 
 class _Begin(NamedTuple):
@@ -48,7 +54,13 @@ class _Begin(NamedTuple):
 
 
 def sea_slopes(
-    record: SeaRecord, frame: Frame, count: int, directions: int, pool: Executor
+    record: SeaRecord,
+    frame: Frame,
+    count: int,
+    directions: int,
+    pool: Executor,
+    keep: Accelerations | None = None,
+    by_state: Accelerations | None = None,
 ) -> tuple[Float[np.ndarray, "w c n"], Float[np.ndarray, "w c n q"]]:
     """Residuals over some steps, and slopes along the directions; zeros of the directions that are not asked for.
 
@@ -58,20 +70,27 @@ def sea_slopes(
         count: Number of steps.
         directions: How many of the directions, from the first on.
         pool: Threads for the segments.
+        keep: Receives the slopes of the acceleration by the state.
+        by_state: These slopes, from a point where the motion and they are the same; None: they are computed. At most
+            `COMPARED_AT_ONCE` directions are then asked for, and the others say what else may move.
     """
     steps, width = jnp.asarray(count), frame.basis.shape[1]
     begin = _begin(record, frame)
+    if by_state is not None:
+        begin = _few(begin, COMPARED_AT_ONCE)
     path, states = _simulated(record, begin.model, begin.state, steps)
     needed = -(-int(evaluations(count + EXTRA_STEPS + 1)) // SEGMENT)
     tangent, found = jax.vmap(Tangent.begin)(begin.d_state), []
-    for i, (slope, push) in enumerate(_segments(record, begin, states, needed, pool)):
+    for i, (slope, push) in enumerate(_segments(record, begin, states, needed, pool, by_state)):
         tangent, some = _followed(tangent, jnp.asarray(i * SEGMENT), slope, push, record.step)
         found.append(np.asarray(some))
+        if keep is not None:
+            keep.append(slope[:, ACCELERATIONS])
     rows = first_evaluations(needed * SEGMENT - evaluations(0))[: len(path)]
     residual: Any = None
     slopes = np.zeros((*record.measured.shape, width))
     for first in range(0, max(directions, 1), COMPARED_AT_ONCE):
-        mine = np.arange(first, first + COMPARED_AT_ONCE) % width  # always as many: one program
+        mine = np.arange(first, first + COMPARED_AT_ONCE) % len(begin.d_state)  # always as many: one program
         along = np.zeros((COMPARED_AT_ONCE, *path.shape))
         along[:, : len(rows)] = np.moveaxis(np.concatenate([part[:, mine] for part in found])[rows], 0, 1)
         few = begin._replace(d_model=jax.tree.map(itemgetter(mine), begin.d_model), d_state=begin.d_state[mine])
@@ -80,13 +99,29 @@ def sea_slopes(
     return np.asarray(residual), slopes
 
 
+def _few(begin: _Begin, count: int) -> _Begin:
+    """The first directions only; what no direction at all moves is known not to move."""
+
+    def of(slope: Array | None) -> Array | None:
+        return slope[:count] if slope is not None and np.asarray(slope).any() else None
+
+    d_model = jax.tree.map(of, begin.d_model, is_leaf=lambda leaf: leaf is None)
+    return begin._replace(d_model=d_model, d_state=begin.d_state[:count])
+
+
 def _segments(
-    record: SeaRecord, begin: _Begin, states: Float[Array, "e s"], count: int, pool: Executor
+    record: SeaRecord,
+    begin: _Begin,
+    states: Float[Array, "e s"],
+    count: int,
+    pool: Executor,
+    by_state: Accelerations | None,
 ) -> Iterator[tuple[Array, Array]]:
     """Linearisations of the first segments in order, some of them computed ahead."""
     ahead: deque[Future[tuple[Array, Array]]] = deque()
     for i in range(count):
-        ahead.append(pool.submit(_linearised, record, begin, states, jnp.asarray(i * SEGMENT)))
+        known = None if by_state is None else by_state[i]
+        ahead.append(pool.submit(_linearised, record, begin, states, jnp.asarray(i * SEGMENT), known))
         if len(ahead) > SEGMENTS_AHEAD * cores():
             yield ahead.popleft().result()
     while ahead:
@@ -121,21 +156,28 @@ def _simulated(
 
 @jit_once
 def _linearised(
-    record: SeaRecord, begin: _Begin, states: Float[Array, "e s"], first: Int[Array, ""]
+    record: SeaRecord,
+    begin: _Begin,
+    states: Float[Array, "e s"],
+    first: Int[Array, ""],
+    by_state: Float[Array, "e 6 s"] | None,
 ) -> tuple[Float[Array, "e s s"], Float[Array, "e q s"]]:
     """Slopes of the right-hand side at the evaluations of a segment, by the state and along the directions."""
     _, unravel = ravel_pytree(begin.model.rest())
     still = jax.tree.map(lambda _: None, record.sea)
 
-    def at(now: tuple[Array, Array]) -> tuple[Array, Array]:
+    def at(now: tuple[Array, Array, Array | None]) -> tuple[Array, Array]:
+        time, state, known = now
+
         def along(d_model: Any) -> tuple[Array, Array]:
-            return linearised_rate(rate_of(unravel), (begin.model, record.sea), (d_model, still))(*now)
+            driver, d_driver = (begin.model, record.sea), (d_model, still)
+            return linearised_rate(rate_of(unravel), driver, d_driver, known)(time, state)
 
         return jax.vmap(along, out_axes=(None, 0))(begin.d_model)
 
     times = times_of(first + jnp.arange(SEGMENT), record.times[0], record.step)
     mine = jax.lax.dynamic_slice_in_dim(states, first, SEGMENT)
-    return jax.lax.map(at, (times, mine), batch_size=LINEARISED_AT_ONCE)
+    return jax.lax.map(at, (times, mine, by_state), batch_size=LINEARISED_AT_ONCE)
 
 
 @jit_once

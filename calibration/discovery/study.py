@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property, reduce
-from itertools import pairwise
-from typing import Any
+from itertools import islice, pairwise
+from typing import Any, TypeAlias
 
 import jax
 import jax.numpy as jnp
@@ -15,7 +15,7 @@ from calibration.campaign.records import Record
 from calibration.discovery.frequency_bands import FourierRows, step_of
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, SeaSelection
 from calibration.discovery.residuals import Frame, SeaRecord, decay_residual, decay_slopes, sea_residuals
-from calibration.discovery.sea_slopes import sea_slopes
+from calibration.discovery.sea_slopes import COMPARED_AT_ONCE, Accelerations, sea_slopes
 from calibration.fitting.cores import cores
 from calibration.parameters.space import ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
@@ -26,6 +26,10 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.interrupts import stoppable_threads
 
 OVERFLOW = 1e100  # motions and slopes from here on are those of a diverging simulation
+
+LinearisationJob: TypeAlias = tuple[Point, Sequence[int]]  # a point, and the directions to linearise along
+KnownSlopes: TypeAlias = dict[tuple[str, ...], Accelerations]  # of accelerations by the state, by the tests of a run
+_Slopes: TypeAlias = Callable[[], list[tuple[np.ndarray, np.ndarray] | None]]  # waits for residuals and slopes
 
 
 @dataclass(frozen=True)
@@ -263,29 +267,62 @@ class Study:
         """Residual and slopes at a point, of the decays and of runs with a fitted test, or of all runs."""
         return self.linearise_all([(place, active)], seas)[0]
 
-    def linearise_all(self, jobs: Sequence[tuple[Point, Sequence[int]]], seas: SeaSelection = "fit") -> list[Linearisation]:
-        """Residual and slopes at several points along some directions each, side by side."""
-        linearisations: list[Linearisation] = []
-        with stoppable_threads(cores()) as pool, stoppable_threads(cores()) as workers:
-            begun = [
-                [(mine, self._slopes(pool, workers, place, mine, seas)) for mine in self._chunks(active)]
-                for place, active in jobs
-            ]
-            for (place, _), chunks in zip(jobs, begun, strict=True):
-                looks = [self._linearisation(place, mine, parts()) for mine, parts in chunks]
-                linearisations.append(reduce(Linearisation.joined_with, looks))
-        return linearisations
+    def linearise_all(
+        self, jobs: Sequence[LinearisationJob], seas: SeaSelection = "fit", keep: KnownSlopes | None = None
+    ) -> list[Linearisation]:
+        """Residual and slopes at several points along some directions each, side by side.
 
-    def _chunks(self, active: Sequence[int]) -> list[tuple[int, ...]]:
-        """Directions in groups that are differentiated at a time; one empty group without any."""
-        return [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
+        Args:
+            jobs: Points and directions.
+            seas: Which runs are simulated.
+            keep: Receives slopes by the state at the first point.
+        """
+
+        def begin(place: Point, active: tuple[int, ...], first: bool) -> _Slopes:
+            return self._slopes(pool, workers, place, active, seas, keep if first else None)
+
+        with stoppable_threads(cores()) as pool, stoppable_threads(cores()) as workers:
+            return self._gathered(jobs, self.width, begin)
+
+    def linearise_neutral(
+        self, jobs: Sequence[LinearisationJob], known: KnownSlopes, moving: Sequence[int], seas: SeaSelection = "fit"
+    ) -> list[Linearisation]:
+        """Residual and slopes at points between which no motion changes, along amplitudes of neutral candidates.
+
+        It takes little time beside `linearise_all`, as slopes by the state are known.
+
+        Args:
+            jobs: Points and directions.
+            known: Slopes by the state at such a point.
+            moving: All directions that jobs ever have: what they move is one program.
+            seas: Which runs are simulated.
+        """
+
+        def begin(place: Point, active: tuple[int, ...], first: bool) -> _Slopes:
+            return self._slopes(pool, workers, place, active, seas, known=known, moving=moving)
+
+        with stoppable_threads(cores()) as pool, stoppable_threads(cores()) as workers:
+            return self._gathered(jobs, COMPARED_AT_ONCE, begin)
+
+    def _gathered(
+        self, jobs: Sequence[LinearisationJob], width: int, begin: Callable[[Point, tuple[int, ...], bool], _Slopes]
+    ) -> list[Linearisation]:
+        """Begin all jobs, in groups of so many directions, and wait for them."""
+        chunks = [(place, mine) for place, active in jobs for mine in self._chunks(active, width)]
+        begun = [begin(place, mine, i == 0) for i, (place, mine) in enumerate(chunks)]
+        looks = iter([self._linearisation(place, mine, parts()) for (place, mine), parts in zip(chunks, begun, strict=True)])
+        return [reduce(Linearisation.joined_with, islice(looks, len(self._chunks(active, width)))) for _, active in jobs]
+
+    def _chunks(self, active: Sequence[int], width: int) -> list[tuple[int, ...]]:
+        """Directions in groups of at most `width`; one empty group without any."""
+        return [tuple(active[begin : begin + width]) for begin in range(0, max(len(active), 1), width)]
 
     def time_slopes(self, place: Point, active: Sequence[int]) -> list[np.ndarray]:
         """Slopes of the motions in time along some directions (s, t, q), of the decays and of every run in waves.
 
         The decays' have their own unknowns' after them (s, t, q + o). Slopes that overflow are zero, as in `linearise`.
         """
-        some = self._chunks(active)
+        some = self._chunks(active, self.width)
         with stoppable_threads(cores()) as pool, stoppable_threads(cores()) as workers:
             jobs = [self._slopes(pool, workers, place, mine, "all") for mine in some]
             found = [[part[1] for part in parts() if part is not None] for parts in jobs]
@@ -299,8 +336,16 @@ class Study:
         return whole
 
     def _slopes(
-        self, pool: Executor, workers: Executor, place: Point, active: tuple[int, ...], seas: SeaSelection = "fit"
-    ) -> Callable[[], list[tuple[np.ndarray, np.ndarray] | None]]:
+        self,
+        pool: Executor,
+        workers: Executor,
+        place: Point,
+        active: tuple[int, ...],
+        seas: SeaSelection = "fit",
+        keep: KnownSlopes | None = None,
+        known: KnownSlopes | None = None,
+        moving: Sequence[int] = (),
+    ) -> _Slopes:
         """Begin work on residual and slopes at a point, along at most `width` directions.
 
         Returns:
@@ -308,6 +353,8 @@ class Study:
         """
         basis = np.zeros((len(place.x), self.width))
         basis[:, : len(active)] = self.directions[list(active)].T
+        if moving:
+            basis[:, -1] += self.directions[list(moving)].sum(axis=0)
         frame = Frame(jnp.asarray(place.x), jnp.asarray(basis))
 
         def flat(parts: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -319,7 +366,9 @@ class Study:
             return flat(decay_slopes(self.decays, frame, jnp.asarray(place.own[i]), self.decay_data[i]))
 
         def of_sea(one: SeaRecord) -> tuple[np.ndarray, np.ndarray]:
-            return flat(sea_slopes(one, frame, self._steps(one, seas), len(active), workers))
+            kept = None if keep is None else keep.setdefault(one.tests, [])
+            by_state = None if known is None else known[one.tests]
+            return flat(sea_slopes(one, frame, self._steps(one, seas), len(active), workers, kept, by_state))
 
         decays, in_seas = self._jobs(pool, of_decay, of_sea, seas)
 

@@ -16,7 +16,7 @@ Linearised: TypeAlias = Callable[
 ACCELERATION = 1  # number of the part that costs most, of states that begin with position and velocity
 
 
-def linearised_rate(rate: Rate, driver: Any, d_driver: Any) -> Linearised:
+def linearised_rate(rate: Rate, driver: Any, d_driver: Any, by_state: Float[Array, "a s"] | None = None) -> Linearised:
     """Slopes of a right-hand side by the state, and along a direction of its driver.
 
     The acceleration is differentiated in reverse, once for the state and for all that moves in the driver. With `jax.vmap` over
@@ -26,6 +26,7 @@ def linearised_rate(rate: Rate, driver: Any, d_driver: Any) -> Linearised:
         rate: Right-hand side.
         driver: Its first argument.
         d_driver: The direction; None where nothing moves.
+        by_state: Slopes of the acceleration by the state, where they are known; None: they are computed.
     """
     moves = jax.tree.map(lambda _, d: d is not None, driver, d_driver, is_leaf=lambda leaf: leaf is None)
     moved, still = eqx.partition(driver, moves)
@@ -36,16 +37,16 @@ def linearised_rate(rate: Rate, driver: Any, d_driver: Any) -> Linearised:
         return rate(eqx.combine(moved, still), time, state)[i]
 
     def heavy(i: int, time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Array, Array]:
-        found, transpose = jax.vjp(lambda *at: part(i, time, *at), state, moved)
-        by_state, by_moved = jax.vmap(transpose)(jnp.eye(found.shape[0]))
-        columns = [leaf.reshape(found.shape[0], -1) for leaf in jax.tree.leaves(by_moved)]
-        return by_state, jnp.concatenate(columns, axis=1) @ along
+        value, transpose = jax.vjp(lambda *at: part(i, time, *at), state, moved)
+        slope, by_moved = jax.vmap(transpose)(jnp.eye(value.shape[0]))
+        columns = [leaf.reshape(value.shape[0], -1) for leaf in jax.tree.leaves(by_moved)]
+        return slope if by_state is None else by_state, jnp.concatenate(columns, axis=1) @ along
 
     def light(i: int, time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Array, Array]:
-        by_state = jax.jacrev(lambda y: part(i, time, y, moved))(state)
+        slope = jax.jacrev(lambda y: part(i, time, y, moved))(state)
         if not along.size:
-            return by_state, jnp.zeros(by_state.shape[0])
-        return by_state, jax.jvp(lambda moved: part(i, time, state, moved), (moved,), (d_moved,))[1]
+            return slope, jnp.zeros(slope.shape[0])
+        return slope, jax.jvp(lambda moved: part(i, time, state, moved), (moved,), (d_moved,))[1]
 
     def at(time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Array, Array]:
         parts = len(jax.eval_shape(rate, driver, time, state))

@@ -88,6 +88,11 @@ class Candidate:
         return (*self.amplitudes, *self.shapes)
 
     @property
+    def has_variants(self) -> bool:
+        """Whether it is tried at several values of its shapes."""
+        return len(self.grid) > 1 or self.shape_finder is not None
+
+    @property
     def choices(self) -> tuple[str, ...]:
         """Labels of discrete choices, which no fit moves."""
         return tuple(dict.fromkeys(label for at in self.grid for label in at if label not in self.shapes))

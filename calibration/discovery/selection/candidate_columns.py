@@ -16,6 +16,7 @@ from calibration.discovery.selection.candidate_passes import CandidateValues, fi
 from calibration.discovery.selection.linear_model import LinearModel
 from calibration.discovery.selection.study_linear_model import linear_model
 from calibration.discovery.selection.subsets import Variant
+from calibration.discovery.study import KnownSlopes
 
 LABORATORY_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position", "static_offset")
 LABORATORY_LOG_ODDS, PHYSICS_LOG_ODDS = math.log(0.05), math.log(0.02)  # one effect is expected, among some forty
@@ -94,15 +95,22 @@ def candidate_columns(
     study = fits.study
     first, later = first_passes(fits, candidates, among)
     active = look.active if anew is None else tuple(anew)
-    base = [] if anew is None else [(look.place, active)]
-    # the model and the first candidates are linearised together
-    looks = study.linearise_all([*base, *jobs_of(fits, look.place, active, first)])
-    if anew is not None:
-        look, *looks = looks
+    jobs = jobs_of(fits, look.place, active, first)
+    looks = []
+    known: KnownSlopes = {}
+    if anew is not None or jobs:
+        place, others = jobs[0] if jobs else (look.place, ())
+        # neutral candidates move nothing, whatever their shapes: the model and the first of them are one linearisation
+        [whole] = study.linearise_all([(place, others if anew is None else (*active, *others))], keep=known)
+        looks = [whole.restricted_to(others)] if jobs else []
+        look = look if anew is None else replace(whole.restricted_to(active), place=look.place)
+    varied = [label for one in fits.setup.candidates if one.has_variants for label in one.amplitudes]
+    moving = study.index(list(dict.fromkeys(varied)))
+    looks += study.linearise_neutral(jobs[1:], known, moving)
     gathered = _Columns(fits, look)
     gathered.add_linearised(chosen, candidates)
     last = packed([*gathered.take(first, looks), *later], study.width)
-    gathered.take(last, study.linearise_all(jobs_of(fits, look.place, active, last)))
+    gathered.take(last, study.linearise_neutral(jobs_of(fits, look.place, active, last), known, moving))
     return gathered.columns()
 
 

@@ -35,7 +35,7 @@ def first_passes(
     declared = [(one, at) for one in candidates if not is_nearly_known(fits, one) for at in one.grid or ({},)]
     declared = [(one, at) for one, at in declared if among is None or any(is_listed(one, at, it) for it in among)]
     passes = packed(sorted(declared, key=lambda pair: pair[0].shape_finder is None), fits.study.width)
-    first = [some for some in passes if any(one.shape_finder is not None for one, _ in some)]
+    first = [some for i, some in enumerate(passes) if i == 0 or any(one.shape_finder is not None for one, _ in some)]
     return first, [pair for some in passes[len(first) :] for pair in some]
 
 
