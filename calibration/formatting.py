@@ -21,7 +21,10 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 def with_deviation(value: float, deviation: float | None) -> str:
-    """A value and its standard deviation, both to the latter's second digit: `1.512 ± 0.013`, `(3.63 ± 0.05)·10⁸`."""
+    """A value and its standard deviation, both to the latter's second digit.
+
+    `1.512 ± 0.013`, `(3.63 ± 0.05)·10⁸`. Without a deviation, the value alone.
+    """
     if deviation is None or not math.isfinite(deviation) or deviation <= 0:
         return number(value)
     size = max(abs(value), deviation)
@@ -45,7 +48,10 @@ def to_width(value: float, width: float) -> str:
 
 
 def interval(low: float | None, high: float | None) -> str:
-    """The ends of an interval, to the second digit of its width: `1.49 to 1.54`; what is known where it is open."""
+    """The ends of an interval, to the second digit of its width: `1.49 to 1.54`.
+
+    Where one end is open: `at least 1.49`, `at most 1.54`. Where both are: `not bounded`.
+    """
     if low is not None and high is not None:
         return f"{to_width(low, high - low)} to {to_width(high, high - low)}"
     if low is None and high is None:
@@ -70,9 +76,10 @@ def signed_percent(ratio: float | None) -> str:
 
 
 def percent_span(ratios: Sequence[float]) -> str:
-    """The smallest and the largest of some ratios in per cent: `0.4-1.7 %`, or `1.7 %` where they read alike.
+    """The smallest and the largest of some ratios in per cent: `0.4-1.7 %`.
 
-    The largest has two significant digits. The smallest has as many decimals, or one significant digit where that is none.
+    `1.7 %` where they read alike. The largest has two significant digits. The smallest has as many decimals, or one significant
+    digit where that is none.
     """
     low, high = 100 * min(ratios), 100 * max(ratios)
     if not high < LARGEST_PERCENT:
@@ -89,7 +96,7 @@ def _decimals(value: float, digits: int) -> int:
 
 def readable_unit(unit: str) -> str:
     """A unit with raised digits, `N s²/m²` for `N s2/m2`; nothing for "-", the unit of a plain number."""
-    return "" if unit == "-" else re.sub(r"(?<=[a-z])([2-6])\b", lambda found: "²³⁴⁵⁶"[int(found[1]) - 2], unit)
+    return "" if unit == "-" else re.sub(r"(?<=[a-z])([2-6])\b", lambda match: "²³⁴⁵⁶"[int(match[1]) - 2], unit)
 
 
 def counted(count: int, noun: str) -> str:
@@ -110,7 +117,10 @@ PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 
 
 def quantity(value: float, deviation: float | None, unit: str) -> str:
-    """A value with its standard deviation in a unit that people read: `81.0 ± 2.1 kN`, degrees for radians."""
+    """A value with its standard deviation in a unit that people read: `81.0 ± 2.1 kN`.
+
+    Degrees stand for radians.
+    """
     largest = max(abs(value), deviation or 0.0)
     factor, unit = _readable(largest, unit)
     sure = deviation is not None and math.isfinite(deviation) and deviation > 0
@@ -122,7 +132,7 @@ def quantity(value: float, deviation: float | None, unit: str) -> str:
 def quantity_range(lower: float, upper: float, unit: str) -> str:
     """A range in a unit that people read: `0 to 81.0 kN`, degrees for radians."""
     factor, unit = _readable(max(abs(lower), abs(upper)), unit)
-    ends = [number(one / factor, 3) if one else "0" for one in (lower, upper)]
+    ends = [number(end / factor, 3) if end else "0" for end in (lower, upper)]
     return f"{ends[0]} to {ends[1]} {unit}".strip()
 
 

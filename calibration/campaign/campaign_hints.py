@@ -27,7 +27,13 @@ DEGREES_PER_RADIAN = 180 / math.pi
 
 
 class Hint(NamedTuple):
-    """What a campaign's records tell together: the first of them, its channel, and the words."""
+    """Remark that several records of a campaign support together.
+
+    Attributes:
+        record: The first of these records.
+        channel: Its channel that the remark is about.
+        message: The remark in words.
+    """
 
     record: Record
     channel: str
@@ -49,37 +55,39 @@ def campaign_hints(
     times = tuple(_period_hints(records, modes, scale))
     # lengths go with times, by the scale
     sizes = tuple(_release_size_hints(records, length, scale, {"length"} if times else set()))
-    known = {quantity(hint.channel) for hint in (*times, *sizes)}
-    return (*times, *sizes, *_coupling_hints(records, modes, widths, length, scale, known))
+    wrong_quantities = {quantity(hint.channel) for hint in (*times, *sizes)}
+    return (*times, *sizes, *_coupling_hints(records, modes, widths, length, scale, wrong_quantities))
 
 
 def _period_hints(records: Sequence[Record], modes: Modes, scale: float) -> Iterator[Hint]:
     """Are all natural periods off by one factor?"""
-    found: dict[str, list[float]] = {}
+    ratios: dict[str, list[float]] = {}
     for record in records:
         dof = str(record.degree_of_freedom)
         period = dominant_period(record.time, record.values[dof])
-        if period is not None and np.isfinite(own := modes.of(dof)):
-            found.setdefault(dof, []).append(math.log(period / own))
-    if sum(map(len, found.values())) < 2:
+        if period is not None and np.isfinite(model_period := modes.of(dof)):
+            ratios.setdefault(dof, []).append(math.log(period / model_period))
+    if sum(map(len, ratios.values())) < 2:
         return
-    every = [one for some in found.values() for one in some]
+    every = [value for values in ratios.values() for value in values]
     ratio = float(np.median(every))
-    first, dofs = records[0], " and ".join(found)
+    first, dofs = records[0], " and ".join(ratios)
     times = f"{math.exp(ratio):.3g} times" if ratio > 0 else f"1/{math.exp(-ratio):.3g} of"
-    said = f"all measured periods, of {dofs}, are {times} the model's"
+    sentence = f"all measured periods, of {dofs}, are {times} the model's"
     for factor, why in _time_factors(scale):
-        if all(abs(one - math.log(factor)) < RATIO_TOLERANCE for one in every):
-            yield Hint(first, "time", f"{said}: {why}")
+        if all(abs(value - math.log(factor)) < RATIO_TOLERANCE for value in every):
+            yield Hint(first, "time", f"{sentence}: {why}")
             return
     if (
         scale == 1
-        and len(found) > 1
+        and len(ratios) > 1
         and abs(ratio) > MIN_COMMON_RATIO
-        and max(abs(one - ratio) for one in every) < SAME_RATIO_TOLERANCE
+        and max(abs(value - ratio) for value in every) < SAME_RATIO_TOLERANCE
         and ratio < 0
     ):
-        yield Hint(first, "time", f"{said}, as those of a model at 1:{math.exp(-2 * ratio):.3g} would be: is `scale` left out?")
+        yield Hint(
+            first, "time", f"{sentence}, as those of a model at 1:{math.exp(-2 * ratio):.3g} would be: is `scale` left out?"
+        )
 
 
 def _time_factors(scale: float) -> Iterator[tuple[float, str]]:
@@ -96,12 +104,12 @@ def _time_factors(scale: float) -> Iterator[tuple[float, str]]:
         yield 1 / factor, f"`channels.time.unit`: {unit} and seconds mixed up?"
 
 
-def _release_size_hints(records: Sequence[Record], length: float, scale: float, known: set[str]) -> Iterator[Hint]:
+def _release_size_hints(records: Sequence[Record], length: float, scale: float, wrong_quantities: set[str]) -> Iterator[Hint]:
     """Are all released displacements, all angles, or all of one motion of a size that no release has?"""
     told: set[str] = set()
     for name, dofs in {"displacement": DOFS[:3], "angle": DOFS[3:], **{dof: (dof,) for dof in DOFS}}.items():
         released = [record for record in records if record.degree_of_freedom in dofs]
-        if len(released) < 2 or told & set(dofs) or quantity(dofs[0]) in known:
+        if len(released) < 2 or told & set(dofs) or quantity(dofs[0]) in wrong_quantities:
             continue
         turns = quantity(dofs[0]) == "angle"
         sizes = [_size(record) / (1.0 if turns else length) for record in released]
@@ -137,11 +145,14 @@ def _coupling_hints(
     widths: Float[np.ndarray, "6"],
     length: float,
     scale: float,
-    known: set[str],
+    wrong_quantities: set[str],
 ) -> Iterator[Hint]:
-    """Do two motions of a mode go together as the model's do? What is `known` to be off is left aside."""
-    found: dict[tuple[str, str], list[float]] = {}
-    first: dict[tuple[str, str], Record] = {}
+    """Do two motions of a mode go together as the model's do?
+
+    Quantities in `wrong_quantities` are left aside.
+    """
+    ratios: dict[tuple[str, str], list[float]] = {}
+    first_records: dict[tuple[str, str], Record] = {}
     for record in records:
         dof = str(record.degree_of_freedom)
         if not np.isfinite(modes.of(dof)):
@@ -156,38 +167,51 @@ def _coupling_hints(
             if ratio is not None:
                 pair = tuple(sorted((dof, other), key=DOFS.index))
                 value = ratio / expected if pair[0] == other else expected / ratio
-                found.setdefault((pair[0], pair[1]), []).append(value)
-                first.setdefault((pair[0], pair[1]), record)
-    for (one, two), values in found.items():
-        message = _factor_in_words(one, two, values, scale, known)
+                ratios.setdefault((pair[0], pair[1]), []).append(value)
+                first_records.setdefault((pair[0], pair[1]), record)
+    for (first, second), values in ratios.items():
+        message = _factor_in_words(first, second, values, scale, wrong_quantities)
         if message is not None:
-            yield Hint(first[one, two], two, f"in {len(values)} {'decay' if len(values) == 1 else 'decays'} {message}")
+            yield Hint(
+                first_records[first, second], second, f"in {len(values)} {'decay' if len(values) == 1 else 'decays'} {message}"
+            )
 
 
-def _factor_in_words(one: str, two: str, values: Sequence[float], scale: float, known: set[str]) -> str | None:
-    """In words, by what the ratio of motion `one` to motion `two` misses the model's, all records the same."""
+def _factor_in_words(first: str, second: str, values: Sequence[float], scale: float, wrong_quantities: set[str]) -> str | None:
+    """Describe the factor by which all ratios of two motions miss the model's.
+
+    Args:
+        first: Name of one motion.
+        second: Name of the other motion.
+        values: Ratio of `first` to `second` over the model's ratio, one for each record (-).
+        scale: The manifest's scale.
+        wrong_quantities: Quantities that are off by themselves: time, length, angle.
+
+    Returns:
+        The description with what may explain the factor; None where nothing does.
+    """
     if all(value < 0 for value in values) and all(abs(math.log(-value)) < UNITY_TOLERANCE for value in values):
-        keys = f"(`channels.{one}.sign` or `channels.{two}.sign`)"
+        keys = f"(`channels.{first}.sign` or `channels.{second}.sign`)"
         return (
-            f"{one} and {two} go together as the model's do, with the other sign: an axis reversed {keys}, or "
+            f"{first} and {second} go together as the model's do, with the other sign: an axis reversed {keys}, or "
             "recorded at another point (`tracked_point`)?"
         )
-    turns = quantity(one) != quantity(two)
-    if {quantity(one), quantity(two)} & known or (turns and "time" in known):
+    turns = quantity(first) != quantity(second)
+    if {quantity(first), quantity(second)} & wrong_quantities or (turns and "time" in wrong_quantities):
         return None
     sizes = [math.log(abs(value)) for value in values]
-    larger, smaller = (one, two) if sizes[0] > 0 else (two, one)
-    factors = [(1000.0, f"millimetres and metres mixed up (`channels.{one}.unit`)")]
+    larger, smaller = (first, second) if sizes[0] > 0 else (second, first)
+    factors = [(1000.0, f"millimetres and metres mixed up (`channels.{first}.unit`)")]
     if turns:
-        factors.append((DEGREES_PER_RADIAN, f"degrees and radians mixed up (`channels.{two}.unit`)"))
+        factors.append((DEGREES_PER_RADIAN, f"degrees and radians mixed up (`channels.{second}.unit`)"))
         factors += [(max(scale, 1 / scale), "lengths not at the scale that `scale` states")] if scale != 1 else []
-    said = [
+    reasons = [
         why
         for factor, why in factors
         if all(abs(size - math.copysign(math.log(factor), sizes[0])) < UNITY_TOLERANCE for size in sizes)
     ]
     times = f"{math.exp(abs(float(np.median(sizes)))):.3g} times"
-    return f"{larger} is {times} too large beside {smaller}, by the model: {' or '.join(said)}?" if said else None
+    return f"{larger} is {times} too large beside {smaller}, by the model: {' or '.join(reasons)}?" if reasons else None
 
 
 def motion_hints(tests: Iterable[Mapping[str, tuple[np.ndarray, np.ndarray]]]) -> Iterator[str]:
@@ -204,8 +228,12 @@ def motion_hints(tests: Iterable[Mapping[str, tuple[np.ndarray, np.ndarray]]]) -
             if min(deviations) > 0:
                 correlation = float(a @ b) / (deviations[0] * deviations[1])
                 ratios.setdefault(name, []).append((math.log(deviations[0] / deviations[1]), correlation))
-    followed = [name for name, some in ratios.items() if all(abs(correlation) > MIN_CORRELATION for _, correlation in some)]
-    turned = [name for name in followed if all(one < 0 and abs(size) < 2 * UNITY_TOLERANCE for size, one in ratios[name])]
+    followed = [name for name, pairs in ratios.items() if all(abs(correlation) > MIN_CORRELATION for _, correlation in pairs)]
+    turned = [
+        name
+        for name in followed
+        if all(correlation < 0 and abs(size) < 2 * UNITY_TOLERANCE for size, correlation in ratios[name])
+    ]
     if turned:
         every = len(turned) == len(followed) > 1
         key = "`wave_channel.sign` or its `position`" if every else ", ".join(f"`channels.{name}.sign`" for name in turned)

@@ -1,8 +1,8 @@
 """Data-quality checks: clocks, gaps, frozen and clipped channels, spikes, drift, windows.
 
-An error is what no fit should be built on, a warning what its reader should know. Repaired, with a warning: rows with a
-value missing and rows that repeat a time, while they are less than 2 % of the window; they are dropped. Nothing else is
-changed. Times in the messages are the file's own, in its own unit.
+An error is what no fit should be built on, a warning what its reader should know. Rows that lack a value or repeat a time are
+dropped with a warning, while they are less than 2 % of the window. Nothing else is changed. Times in the messages are the
+file's own, in its own unit.
 """
 
 from __future__ import annotations
@@ -44,7 +44,17 @@ Severity = Literal["warning", "error"]
 
 @dataclass(frozen=True)
 class Finding:
-    """Something about a record. `time` is on the file's axis; `expected` is what an error should have been instead."""
+    """Observation on the quality of a record.
+
+    Attributes:
+        severity: Warning or error.
+        file: Name of the data file.
+        test: Name of the test.
+        channel: Channel, or "".
+        time: Time on the file's axis, or None.
+        message: The observation in words.
+        expected: What an error should have been instead.
+    """
 
     severity: Severity
     file: str
@@ -68,13 +78,28 @@ class Finding:
 
 
 def check_records(manifest: Manifest, folder: Path, series: tuple[Series, ...] | None = None) -> tuple[Finding, ...]:
-    """Findings on every test; `series` spares reading the files again. Raises InputError for what cannot be read."""
+    """Check the quality of the data of every test.
+
+    Args:
+        manifest: The manifest of the campaign.
+        folder: Folder of the data files.
+        series: The tests as read from their files; None: they are read here.
+
+    Returns:
+        Findings on every test.
+
+    Raises:
+        InputError: A file cannot be read.
+    """
     series = read_series(manifest, folder) if series is None else series
-    return tuple(finding for one in series for finding in _Check(manifest, one, series).all())
+    return tuple(finding for test_series in series for finding in _Check(manifest, test_series, series).all())
 
 
 class _Check:
-    """The checks of one series. Those after `missing` work on the rows that are kept, and need a sound clock."""
+    """Checks of one series.
+
+    Checks after `missing` use only rows without faults, and need increasing times.
+    """
 
     def __init__(self, manifest: Manifest, series: Series, others: tuple[Series, ...]) -> None:
         self.manifest, self.series, self.others, self.test = manifest, series, others, series.test
@@ -90,18 +115,18 @@ class _Check:
         self.period: float | None = None
 
     def all(self) -> list[Finding]:
-        found = [*self.window(), *self.zero()]
-        found += self.units()
-        if not any(finding.severity == "error" for finding in found):
-            found += [*self.clock(), *self.missing()]
-        if any(finding.severity == "error" for finding in found):
-            return found
+        findings = [*self.window(), *self.zero()]
+        findings += self.units()
+        if not any(finding.severity == "error" for finding in findings):
+            findings += [*self.clock(), *self.missing()]
+        if any(finding.severity == "error" for finding in findings):
+            return findings
         if self.driven in self.values:
             self.period = dominant_period(self.time, self.values[self.driven])
         signals = (f for name in self.values for f in self.signal(name))
         told = extent_warnings(self.series, self.time, self.values, self.compared, self.period)
-        extent = [self.finding("warning", *one) for one in told]
-        return [*found, *extent, *self.held_out(), *self.oscillation(), *self.sea(), *signals]
+        extent = [self.finding("warning", *warning) for warning in told]
+        return [*findings, *extent, *self.held_out(), *self.oscillation(), *self.sea(), *signals]
 
     def finding(self, severity: Severity, channel: str, time: float | None, message: str, expected: str = "") -> Finding:
         return Finding(severity, self.test.file, self.test.id, channel, time, message, expected)
@@ -134,10 +159,10 @@ class _Check:
         elif count < MIN_SAMPLES:
             yield self.finding("error", "", None, f"{count} samples", f"{MIN_SAMPLES} samples or more in the window")
         elif self.test.transient > 0 and after < MIN_SAMPLES:
-            left = f"{self.at(self.test.transient)} of a record of {self.at(end - start)}, which leaves {after}"
+            message = f"{self.at(self.test.transient)} of a record of {self.at(end - start)}, which leaves {after}"
             if missing := int((~self.series.good).sum()):
-                left = f"{left}, as {missing} of its {count} rows lack a value"
-            yield self.finding("error", "", None, left, f"a transient that leaves {MIN_SAMPLES} samples or more")
+                message = f"{message}, as {missing} of its {count} rows lack a value"
+            yield self.finding("error", "", None, message, f"a transient that leaves {MIN_SAMPLES} samples or more")
 
     def units(self) -> Iterator[Finding]:
         """Does the file state the unit that the manifest does?"""
@@ -188,8 +213,8 @@ class _Check:
             return
         if same := int(np.sum(steps == 0)):
             i = int(np.argmax(steps == 0))
-            place = f"the first {self.at(time[i])} in {self.series.row(rows[i + 1])}"
-            yield self.dropped(same, "time", float(time[i]), f"{same} times that repeat, {place}")
+            first_repeat = f"the first {self.at(time[i])} in {self.series.row(rows[i + 1])}"
+            yield self.dropped(same, "time", float(time[i]), f"{same} times that repeat, {first_repeat}")
         steps = np.diff(self.time)
         for i in np.flatnonzero(steps > GAP_STEPS * self.step)[:MAX_SHOWN]:
             yield self.finding(
@@ -214,10 +239,10 @@ class _Check:
                 before = before[valid_values(before)]
                 when = float(before[-1]) if len(before) else None
                 near = "at the start" if when is None else f"near {self.at(when)}"
-                place = f"the first {near}, {self.series.row(int(bad[0]))}"
+                first_missing = f"the first {near}, {self.series.row(int(bad[0]))}"
                 code = missing_code(values)
-                what = "missing or infinite" if code is None else f"missing, as {code:g} seems to say"
-                yield self.dropped(len(bad), channel, when, f"{len(bad)} values {what}, {place}")
+                fault = "missing or infinite" if code is None else f"missing, as {code:g} seems to say"
+                yield self.dropped(len(bad), channel, when, f"{len(bad)} values {fault}, {first_missing}")
 
     def dropped(self, count: int, channel: str, time: float | None, message: str) -> Finding:
         if count < MAX_DROPPED_SHARE * len(self.series.time):
@@ -246,7 +271,7 @@ class _Check:
             yield self.finding("warning", self.driven, None, f"only {cycles:.1f} cycles of about {self.at(self.period)}")
 
     def sea(self) -> Iterator[Finding]:
-        """Is the sea what the manifest says, known where it was measured, and long enough?"""
+        """Does the sea agree with the manifest, is the position of its gauge stated, and is it long enough?"""
         test, irregular = self.test, self.test.kind == "irregular"
         if self.driven != WAVE or WAVE not in self.values:
             return
@@ -258,13 +283,13 @@ class _Check:
         height = wave_height(self.values[WAVE][self.compared], irregular) * metres
         if stated is not None and not 0.7 < height / stated < 1.4:
             yield self.finding("warning", WAVE, None, f"{name} is stated as {stated:g} m, and recorded as {height:.3g} m")
-        left = float(self.time[-1] - self.time[0]) - test.transient
-        if irregular and self.period is not None and left < MIN_WAVES * self.period:
+        duration = float(self.time[-1] - self.time[0]) - test.transient
+        if irregular and self.period is not None and duration < MIN_WAVES * self.period:
             yield self.finding(
                 "warning",
                 WAVE,
                 None,
-                f"only {self.at(left)} after the transient, {left / self.period:.1f} waves "
+                f"only {self.at(duration)} after the transient, {duration / self.period:.1f} waves "
                 f"of about {self.at(self.period)}: too few to tell a sea by",
             )
 
@@ -273,12 +298,12 @@ class _Check:
         values, time = self.values[channel], self.time
         grain = resolution(values)
         if grain == 0:
-            said = f"one value throughout, {values[0]:.6g}"
+            message = f"one value throughout, {values[0]:.6g}"
             if channel == self.driven:
-                yield self.finding("error", channel, None, said, "a signal that moves")
+                yield self.finding("error", channel, None, message, "a signal that moves")
             else:
                 left_out = ": left out" if channel in frozen_channels(self.series) else ""
-                yield self.finding("warning", channel, None, f"{said}{left_out}")
+                yield self.finding("warning", channel, None, f"{message}{left_out}")
             return
         step = local_resolution(values)
         starts, lengths = constant_stretches(values, grain)
@@ -326,14 +351,31 @@ class _Check:
         return float(self.time[np.argmax(wave > 0.5 * wave.max())])
 
     def in_zero(self, first: float, last: float) -> bool:
-        """Whether a stretch of time is in still water by the manifest, or goes on for less than a period after it."""
+        """Whether a stretch of time is in still water by the manifest.
+
+        With a zero window, the stretch begins after the window's begin, and ends less than a period after its end. With a zero
+        test, every time of that test counts.
+
+        Args:
+            first: Begin of the stretch, in the file's unit.
+            last: End of the stretch, in the file's unit.
+        """
         zero = self.manifest.zero
         if zero is None or zero.window is None:
             return zero is not None and zero.test == self.test.id
         return bool(first >= zero.window[0] and last < zero.window[1] + (self.period or 0.0))
 
     def drift(self, channel: str, values: np.ndarray, grain: float) -> Iterator[Finding]:
-        """In a decay the mean over one cycle, first third against last; otherwise a line, against what is left."""
+        """Warn of a mean that drifts.
+
+        In a decay, means over one cycle in the first and the last third of the record are compared. In other tests, the rise of
+        a straight line through the values is compared with their deviation from it.
+
+        Args:
+            channel: Name of the channel.
+            values: (n,) its values, in its own unit.
+            grain: Its resolution, in its own unit.
+        """
         if self.test.kind == "decay":
             n = round(self.period / self.step) if self.period is not None and channel == self.driven else 0
             if n < 2 or len(values) < 3 * n:

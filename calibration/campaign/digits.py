@@ -14,33 +14,37 @@ _CORNER_RATIO = 2.0  # times that, at half of the corners at least
 
 
 def local_resolution(values: np.ndarray) -> np.ndarray:
-    """Return the step in which each value was written, (n,), no less than `resolution` of them all.
+    """Return the step in which each value was written, (n,).
 
-    A fixed number of significant digits (%.4g) makes this step grow with the value by decades, a float32 by octaves.
+    No step is less than the `resolution` of all values. A fixed number of significant digits (%.4g) makes this step grow with
+    the value by decades, a float32 by octaves.
     """
     step = np.full(len(values), resolution(values))
     size = np.abs(values)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         decade = np.where(size > 0, np.floor(np.log10(size) + 1e-12), -99)
         places = np.full(len(values), np.inf)
-        for place in reversed(_PLACES):
-            scaled = values * 10.0**place
-            places[np.abs(scaled - np.rint(scaled)) < 1e-9 * np.maximum(np.abs(scaled), 1.0)] = place
-    for one in np.unique(decade[size > 0]):
-        usual = float(np.quantile(places[decade == one], _PLACES_QUANTILE, method="lower"))
+        for decimals in reversed(_PLACES):
+            scaled = values * 10.0**decimals
+            places[np.abs(scaled - np.rint(scaled)) < 1e-9 * np.maximum(np.abs(scaled), 1.0)] = decimals
+    for exponent in np.unique(decade[size > 0]):
+        usual = float(np.quantile(places[decade == exponent], _PLACES_QUANTILE, method="lower"))
         if np.isfinite(usual):
-            step[decade == one] = np.maximum(step[decade == one], 10.0**-usual)
+            step[decade == exponent] = np.maximum(step[decade == exponent], 10.0**-usual)
     if np.array_equal(values, values.astype(np.float32)):
         step = np.maximum(step, np.spacing(np.abs(values).astype(np.float32)).astype(float))
     return step
 
 
 def straight_piece(values: np.ndarray, step: np.ndarray) -> float:
-    """Return the mean length (samples) of the straight or level pieces of a record that was interpolated; 1 for others.
+    """Return the mean length of the straight or level pieces of an interpolated record.
 
     Args:
         values: (n,) one channel.
         step: (n,) its `local_resolution`.
+
+    Returns:
+        The length in samples; 1 for a record that was not interpolated.
     """
     rounding = _ROUNDING_STEPS * step[1:-1] + 1e-12 * np.abs(values).max()
     turn = np.abs(np.diff(values, 2)) / rounding

@@ -38,11 +38,11 @@ def _at(series: Series, time: float) -> str:
 
 
 def _free_motion_warnings(series: Series, time: np.ndarray) -> Iterator[ExtentWarning]:
-    """What of a decay was left out, since the model was held or pushed."""
+    """Warn of the parts of a decay that are left out, since the model was held or pushed."""
     free, channel = series.free, str(series.test.degree_of_freedom)
     if free is None:
         return
-    begin, until, ended = (_at(series, float(one)) for one in (time[0], free.held_until, free.ended_at))
+    begin, until, ended = (_at(series, float(moment)) for moment in (time[0], free.held_until, free.ended_at))
     still = f"stands still at {free.level:.4g} {series.channels[channel].unit} until {until}"
     if free.start == "release":
         yield channel, free.held_until, f"{still}: the decay begins at this release, {begin} ({_WINDOW_HINT})"
@@ -50,9 +50,9 @@ def _free_motion_warnings(series: Series, time: np.ndarray) -> Iterator[ExtentWa
         message = f"{still}, and is pushed or pulled then: the decay begins where it turns, {begin} ({_WINDOW_HINT})"
         yield channel, free.held_until, message
     if free.end != "record":
-        what = "pushed or pulled" if free.end == "push" else "held"
+        disturbance = "pushed or pulled" if free.end == "push" else "held"
         done = "`window` includes this" if series.test.window else "the decay ends there (`window` overrides this)"
-        yield channel, free.ended_at, f"is {what} again after {ended}: {done}"
+        yield channel, free.ended_at, f"is {disturbance} again after {ended}: {done}"
 
 
 def _wave_in_decay_warnings(
@@ -60,12 +60,16 @@ def _wave_in_decay_warnings(
 ) -> Iterator[ExtentWarning]:
     """Is a decay in still water?"""
     channel = str(series.test.degree_of_freedom)
-    if WAVE in values and (other := waves_of_others(time, values[WAVE], period)) is not None:
-        height = f"{2 * other[1]:.2g} {series.channels[WAVE].unit} high"
-        yield WAVE, None, f"waves of {_at(series, other[0])}, {height}, where a decay should be in still water"
-    elif period is not None and channel in values and (left := waves_left(time, values[channel], period)) is not None:
-        size = f"{left[1]:.2g} {series.channels[channel].unit}"
-        yield channel, None, f"its last third oscillates by {size} in {_at(series, left[0])}: are waves left in the basin?"
+    if WAVE in values and (waves := waves_of_others(time, values[WAVE], period)) is not None:
+        height = f"{2 * waves[1]:.2g} {series.channels[WAVE].unit} high"
+        yield WAVE, None, f"waves of {_at(series, waves[0])}, {height}, where a decay should be in still water"
+    elif period is not None and channel in values and (oscillation := waves_left(time, values[channel], period)) is not None:
+        size = f"{oscillation[1]:.2g} {series.channels[channel].unit}"
+        yield (
+            channel,
+            None,
+            f"its last third oscillates by {size} in {_at(series, oscillation[0])}: are waves left in the basin?",
+        )
 
 
 def _wave_span_warnings(

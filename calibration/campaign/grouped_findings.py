@@ -43,18 +43,22 @@ class GroupedFinding(NamedTuple):
 def group_findings(findings: Iterable[Finding]) -> list[GroupedFinding]:
     """Findings in their order, equal messages of one channel together."""
     groups: dict[tuple[str, str], list[Finding]] = {}
-    for one in findings:
-        alike = NUMBER.sub("#", one.message) if one.time is None else one.message
-        groups.setdefault((one.channel, alike), []).append(one)
-    found = []
-    for (channel, _), some in groups.items():
-        tests, files = _unique(one.test for one in some), _unique(one.file for one in some)
-        found.append(GroupedFinding(tests, files, channel, _spanned([one.message for one in some])))
-    return found
+    for finding in findings:
+        alike = NUMBER.sub("#", finding.message) if finding.time is None else finding.message
+        groups.setdefault((finding.channel, alike), []).append(finding)
+    grouped = []
+    for (channel, _), group in groups.items():
+        tests, files = _unique(finding.test for finding in group), _unique(finding.file for finding in group)
+        grouped.append(GroupedFinding(tests, files, channel, _spanned([finding.message for finding in group])))
+    return grouped
 
 
 def _spanned(messages: list[str]) -> str:
-    """Messages that differ by their numbers alone as one, with the smallest and the largest of each number."""
+    """Merge messages that differ by their numbers alone.
+
+    Returns:
+        One message with the smallest and the largest of each number.
+    """
     columns = iter([sorted(set(column), key=float) for column in zip(*map(NUMBER.findall, messages), strict=True)])
     return NUMBER.sub(lambda _: " to ".join(dict.fromkeys(((column := next(columns))[0], column[-1]))), messages[0])
 

@@ -39,7 +39,7 @@ class Campaign:
         platform: Content of the platform file.
         records: Measured motions of all tests, in SI at full scale.
         findings: Warnings about the data.
-        own: A model in place of the platform file's; None for the latter.
+        model_override: A model in place of the platform file's; None for the latter.
     """
 
     manifest: Manifest
@@ -47,7 +47,7 @@ class Campaign:
     platform: Platform
     records: tuple[Record, ...]
     findings: tuple[Finding, ...]
-    own: Model | None = None
+    model_override: Model | None = None
 
     @cached_property
     def model(self) -> Model:
@@ -56,7 +56,7 @@ class Campaign:
         Raises:
             InputError: The platform is impossible.
         """
-        return build(self.platform) if self.own is None else self.own
+        return build(self.platform) if self.model_override is None else self.model_override
 
     def with_model(self, model: Model) -> Campaign:
         """This campaign with a model in place of the platform file's, to be calibrated and diagnosed.
@@ -64,7 +64,7 @@ class Campaign:
         Args:
             model: The model, which may have loads that no platform file has.
         """
-        return replace(self, own=model)
+        return replace(self, model_override=model)
 
     def used(self, use: str) -> tuple[Record, ...]:
         """Records of the tests of one use.
@@ -132,10 +132,10 @@ def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]
     for i, test in enumerate(manifest.tests):
         if test.kind not in IN_WAVES or test.use == "ignore":
             continue
-        stated = {f"systems[{j}].heading": one.heading for j, one in enumerate(test.sea.systems)}
+        stated = {f"systems[{j}].heading": system.heading for j, system in enumerate(test.sea.systems)}
         for key, heading in (stated or {"heading": test.sea.heading}).items():
-            if (other := platform.of_other_waves(heading)) is not None:
-                expected = f"{other.words} deg, the {other.key} of {manifest.platform}"
+            if (computed := platform.of_other_waves(heading)) is not None:
+                expected = f"{computed.words} deg, the {computed.key} of {manifest.platform}"
                 yield Problem(f"tests[{i}].sea.{key}", expected, f"{heading:g} deg")
 
 
@@ -143,8 +143,8 @@ def _missing_restoring(platform: Platform) -> str:
     """Which restoring a platform without members leaves out, or ""."""
     if platform.members or platform.hydrostatics is None:
         return ""
-    given = platform.hydrostatics.model_dump(exclude_defaults=True)
-    left_out = [key for key in ("C44", "C55") if not {key, f"{key}_buoyancy", "file"} & set(given)]
+    stated = platform.hydrostatics.model_dump(exclude_defaults=True)
+    left_out = [key for key in ("C44", "C55") if not {key, f"{key}_buoyancy", "file"} & set(stated)]
     verb = "are" if len(left_out) > 1 else "is"
     return f"Without members, `hydrostatics` states what restores: {listed(left_out)} {verb} left out." if left_out else ""
 
@@ -204,5 +204,5 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     band = wave_band(manifest, model, records)
     doubtful = (*platform_findings(model, manifest.platform), *check_tables(records, model, band), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
-        raise InputError(source, [*(one.problem for one in doubtful if isinstance(one, CampaignFinding)), *grave])
+        raise InputError(source, [*(finding.problem for finding in doubtful if isinstance(finding, CampaignFinding)), *grave])
     return replace(campaign, findings=(*findings, *doubtful))

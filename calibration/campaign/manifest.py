@@ -1,8 +1,8 @@
 """Schema of campaign.yaml: tests, channels, units, and the use of each test.
 
-Everything in a manifest is stated as it was recorded: windows, `transient`, noise, wave heights and positions are in
-the units and at the scale of the files, whatever `scale` says. Bounds and priors of `calibrate`, and `plausible`, are about the
-model's parameters and at the scale of the platform file.
+Values are stated as they were recorded: windows, `transient`, noise, wave heights and positions. They are in the units and at
+the scale of the files, whatever `scale` is. Bounds and priors of `calibrate`, and `plausible`, are about the model's
+parameters and at the scale of the platform file.
 """
 
 from __future__ import annotations
@@ -165,7 +165,10 @@ class Prior(Schema):
 
 
 class Calibrate(Schema):
-    """What is calibrated: labels or patterns such as `column.*`. `free` left out means all that the model declares."""
+    """Parameters to calibrate, as labels or patterns such as `column.*`.
+
+    Without `free`, all parameters that the model declares are calibrated.
+    """
 
     free: tuple[Text, ...] | None = None
     fixed: tuple[Text, ...] = ()
@@ -220,15 +223,15 @@ class Manifest(Schema):
     def turned(self, channels: Collection[str]) -> Manifest:
         """With the signs of these channels changed, in tests that have one of their own, too."""
 
-        def other(some: Mapping[str, Any]) -> dict[str, Any]:
+        def reverse(entries: Mapping[str, Any]) -> dict[str, Any]:
             return {
-                name: one.model_copy(update={"sign": -one.sign}) if name in channels and one and one.sign else one
-                for name, one in some.items()
+                name: entry.model_copy(update={"sign": -entry.sign}) if name in channels and entry and entry.sign else entry
+                for name, entry in entries.items()
             }
 
-        wave = None if self.wave_channel is None else other({WAVE: self.wave_channel})[WAVE]
-        tests = tuple(test.model_copy(update={"channels": other(test.channels)}) for test in self.tests)
-        return self.model_copy(update={"channels": other(self.channels), "wave_channel": wave, "tests": tests})
+        wave = None if self.wave_channel is None else reverse({WAVE: self.wave_channel})[WAVE]
+        tests = tuple(test.model_copy(update={"channels": reverse(test.channels)}) for test in self.tests)
+        return self.model_copy(update={"channels": reverse(self.channels), "wave_channel": wave, "tests": tests})
 
 
 def _channel_problems(manifest: Manifest) -> Iterator[Problem]:
@@ -250,8 +253,10 @@ def _channel_problems(manifest: Manifest) -> Iterator[Problem]:
         if name not in (*CHANNELS, WAVE) or where == "channels.wave":
             hint = "Waves have their own key, wave_channel." if name == WAVE else suggest(name, CHANNELS)
             yield Problem(where, "one of " + ", ".join(CHANNELS), repr(name), hint)
-        elif unit not in (known := SI[quantity(name)]):
-            yield Problem(f"{where}.unit", f"a unit of {quantity(name)}: " + ", ".join(known), repr(unit), suggest(unit, known))
+        elif unit not in (allowed := SI[quantity(name)]):
+            yield Problem(
+                f"{where}.unit", f"a unit of {quantity(name)}: " + ", ".join(allowed), repr(unit), suggest(unit, allowed)
+            )
 
 
 def _test_problems(manifest: Manifest) -> Iterator[Problem]:
@@ -259,35 +264,35 @@ def _test_problems(manifest: Manifest) -> Iterator[Problem]:
         yield Problem("tests", "one test at least", "none")
     ids = [test.id for test in manifest.tests]
     for i, test in enumerate(manifest.tests):
-        at = f"tests[{i}]"
+        where = f"tests[{i}]"
         if not re.fullmatch(r"[\w+=][\w .,()+=@-]*", test.id) or test.id[-1] in " ." or len(test.id) > 100:
-            yield Problem(f"{at}.id", "a name that can be a file's: letters, digits, - _ . and the like", repr(test.id))
+            yield Problem(f"{where}.id", "a name that can be a file's: letters, digits, - _ . and the like", repr(test.id))
         if test.id.lower() in (name.lower() for name in ids[:i]):
-            yield Problem(f"{at}.id", "an id that no other test has", repr(test.id), "Upper and lower case are alike.")
+            yield Problem(f"{where}.id", "an id that no other test has", repr(test.id), "Upper and lower case are alike.")
         if test.repeat_of is not None and (test.repeat_of not in ids or test.repeat_of == test.id):
-            yield _unknown(f"{at}.repeat_of", "the id of another test", test.repeat_of, set(ids) - {test.id})
+            yield _unknown(f"{where}.repeat_of", "the id of another test", test.repeat_of, set(ids) - {test.id})
         present = [name for name in manifest.channels if name in DOFS and test.channels.get(name, True) is not None]
         if not present:
-            yield Problem(f"{at}.channels", "one motion at least", "none that is left")
+            yield Problem(f"{where}.channels", "one motion at least", "none that is left")
         if test.kind == "decay" and test.degree_of_freedom is None:
-            yield Problem(f"{at}.degree_of_freedom", "the motion that was released: " + ", ".join(DOFS), "nothing")
+            yield Problem(f"{where}.degree_of_freedom", "the motion that was released: " + ", ".join(DOFS), "nothing")
         elif test.degree_of_freedom is not None and test.degree_of_freedom not in present:
             yield Problem(
-                f"{at}.degree_of_freedom", "a motion that has a channel: " + ", ".join(present), repr(test.degree_of_freedom)
+                f"{where}.degree_of_freedom", "a motion that has a channel: " + ", ".join(present), repr(test.degree_of_freedom)
             )
         if test.kind in IN_WAVES and test.use != "ignore" and manifest.wave_channel is None:
-            yield Problem(f"{at}.kind", "a wave_channel in the manifest, since waves drive this test", "none")
+            yield Problem(f"{where}.kind", "a wave_channel in the manifest, since waves drive this test", "none")
         in_waves = test.kind in IN_WAVES and test.use != "ignore"
         if in_waves and not test.sea.long_crested and manifest.records.order != 1:
             hint = "Second order is not separated from a record of one gauge then."
-            yield Problem(f"{at}.sea", "records: {order: 1} with waves of several headings", "order: 2", hint)
+            yield Problem(f"{where}.sea", "records: {order: 1} with waves of several headings", "order: 2", hint)
         if manifest.tracked_point is not None:
             yield from (
-                Problem(f"{at}, {p.where}", p.expected, p.found, p.hint)
+                Problem(f"{where}, {p.where}", p.expected, p.found, p.hint)
                 for p in missing_angles(manifest.tracked_point, present)
             )
         for problem in _ordered(test.window) if test.window is not None else ():
-            yield Problem(f"{at}.window", problem.expected, problem.found)
+            yield Problem(f"{where}.window", problem.expected, problem.found)
 
 
 def _other_problems(manifest: Manifest) -> Iterator[Problem]:
@@ -312,15 +317,25 @@ def _other_problems(manifest: Manifest) -> Iterator[Problem]:
             yield Problem(where, problem.expected, problem.found)
 
 
-def _unknown(where: str, expected: str, name: str, known: Iterable[str]) -> Problem:
-    known = sorted(known)
+def _unknown(where: str, expected: str, name: str, names: Iterable[str]) -> Problem:
+    names = sorted(names)
     return Problem(
-        where, f"{expected}: {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}", repr(name), suggest(name, known)
+        where, f"{expected}: {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}", repr(name), suggest(name, names)
     )
 
 
 def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
-    """The manifest in a campaign's folder, or at a path, and the folder. Raises InputError with all that is wrong."""
+    """Read the manifest of a campaign.
+
+    Args:
+        path: Folder of the campaign, or path of its manifest.
+
+    Returns:
+        The manifest and the campaign's folder.
+
+    Raises:
+        InputError: Anything is wrong; it has all mistakes.
+    """
     path = campaign_file(path)
     folder = path.parent
     data: Any = read_yaml(path, "campaign")
@@ -329,8 +344,8 @@ def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
     for i, test in enumerate(manifest.tests):
         if not _there(folder / test.file):
             near = [item.name for item in folder.iterdir() if item.is_file()]
-            found = f"{'a folder' if (folder / test.file).is_dir() else 'no such file'}: {test.file!r}"
-            problems.append(Problem(f"tests[{i}].file", f"a file in {folder}", found, suggest(test.file, near)))
+            actual = f"{'a folder' if (folder / test.file).is_dir() else 'no such file'}: {test.file!r}"
+            problems.append(Problem(f"tests[{i}].file", f"a file in {folder}", actual, suggest(test.file, near)))
     if _is_path(manifest.platform) and not _there(folder / manifest.platform):
         near = [item.name for item in folder.iterdir() if item.suffix in (".yaml", ".yml")]
         problems.append(
@@ -347,7 +362,11 @@ def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
 
 
 def platform_source(manifest: Manifest, folder: Path) -> str:
-    """What `load_platform` is to be given: the path of the campaign's own platform file, or a built-in name."""
+    """Argument of `load_platform` for a campaign's platform.
+
+    Returns:
+        Path of the campaign's own platform file, or the name of a built-in platform.
+    """
     path = folder / manifest.platform
     return str(path) if _is_path(manifest.platform) or _there(path) else manifest.platform
 

@@ -47,30 +47,33 @@ def check_plausible(records: Sequence[Record], model: Model, zeroed: bool, scale
     decays = [record for record in used if record.kind == "decay"]
     length, gravity = characteristic_length(model), float(model.environment.gravity)
     periods: dict[str, float] = {}
-    found: list[Finding] = []
+    findings: list[Finding] = []
     hints: tuple[Hint, ...] = ()
     if decays:
         rest = equilibrium(model)
         modes = natural_modes(model, rest)
         periods = {dof: modes.of(dof) for dof in DOFS if np.isfinite(modes.of(dof))}
         hints = campaign_hints(decays, modes, widths(model), length, scale)
-        found += [
+        findings += [
             CampaignFinding("warning", h.record.file, h.record.id, h.channel, None, h.message, EXPECTED_AGREEMENT)
             for h in hints
         ]
-        found += [] if zeroed else _rest_findings(decays, dict(zip(DOFS, map(float, rest))), length)
+        findings += [] if zeroed else _rest_findings(decays, dict(zip(DOFS, map(float, rest))), length)
     told = any(hint.channel == "time" for hint in hints)
-    return (*found, *(one for record in used for one in _record_findings(record, length, gravity, periods, scale, told)))
+    return (
+        *findings,
+        *(finding for record in used for finding in _record_findings(record, length, gravity, periods, scale, told)),
+    )
 
 
 def _rest_findings(decays: Sequence[Record], rest: dict[str, float], length: float) -> Iterator[Finding]:
     """Where nobody took a zero: do decays end where the platform floats?"""
     for name in DOFS:
-        there = [float(np.mean(one.values[name][len(one.time) // 2 :])) for one in decays if name in one.values]
+        ends = [float(np.mean(record.values[name][len(record.time) // 2 :])) for record in decays if name in record.values]
         limit = MAX_REST_OFFSET * (1.0 if name in DOFS[3:] else length)
-        if there and abs(where := float(np.median(there)) - rest[name]) > limit:
+        if ends and abs(offset := float(np.median(ends)) - rest[name]) > limit:
             message = (
-                f"decays end {_in_words(name, where)} from where the declared platform floats: `zero` would say where still "
+                f"decays end {_in_words(name, offset)} from where the declared platform floats: `zero` would say where still "
                 "water is, without it that is taken for ballast or a force"
             )
             yield Finding("warning", decays[0].file, decays[0].id, name, None, message)
@@ -81,47 +84,47 @@ def _record_findings(
 ) -> Iterator[Finding]:
     """Findings on one record. `told`: that all periods are off is said of the campaign."""
 
-    def found(limits: tuple[float, float], ratio: float, channel: str, message: str, expected: str) -> Iterator[Finding]:
+    def beyond(limits: tuple[float, float], ratio: float, channel: str, message: str, expected: str) -> Iterator[Finding]:
         if ratio > limits[0]:
             severity: Severity = "error" if ratio > limits[1] else "warning"
             yield Finding(severity, record.file, record.id, channel, None, message, expected)
 
     if record.kind == "decay" and record.degree_of_freedom in periods:
-        name, own = record.degree_of_freedom, periods[record.degree_of_freedom]
+        name, model_period = record.degree_of_freedom, periods[record.degree_of_freedom]
         period = dominant_period(record.time, record.values[name])
         if period is not None:
-            why, by_scale = _period_reason(period / own, scale)
-            message = f"a period of {period:.3g} s {FULL_SCALE}, the model's is {own:.3g} s: {why}"
+            why, by_scale = _period_reason(period / model_period, scale)
+            message = f"a period of {period:.3g} s {FULL_SCALE}, the model's is {model_period:.3g} s: {why}"
             limits, ratio = (
                 (WRONG_PERIOD_RATIO if told else 1.0 if by_scale else UNUSUAL_PERIOD_RATIO, WRONG_PERIOD_RATIO),
-                max(period / own, own / period),
+                max(period / model_period, model_period / period),
             )
-            yield from found(limits, ratio, name, message, f"a period of about {own:.3g} s")
+            yield from beyond(limits, ratio, name, message, f"a period of about {model_period:.3g} s")
     for name, values in record.values.items():
         size = float(np.percentile(np.abs(values - np.median(values)), 99))
         turns = name in DOFS[3:]
         if name == record.degree_of_freedom and size < (SMALLEST_RELEASE_ANGLE if turns else SMALLEST_RELEASE * length):
-            what = "degrees or radians?" if turns else UNIT_OR_SCALE
-            yield Finding("warning", record.file, record.id, name, None, f"moves by {_in_words(name, size)} only: {what}")
+            hint = "degrees or radians?" if turns else UNIT_OR_SCALE
+            yield Finding("warning", record.file, record.id, name, None, f"moves by {_in_words(name, size)} only: {hint}")
         if turns:
             message = f"an angle of {_in_words(name, size)}: degrees or radians?"
-            yield from found(ANGLE_LIMITS, size, name, message, "an angle that a platform may have")
+            yield from beyond(ANGLE_LIMITS, size, name, message, "an angle that a platform may have")
         else:
             gyration = f"the platform's radius of gyration is {length:.3g} m: {UNIT_OR_SCALE}"
             message = f"a motion of {size:.3g} m {FULL_SCALE}, and {gyration}"
             limits = HEAVE_LIMITS if name == "heave" else HORIZONTAL_LIMITS
-            yield from found(limits, size / length, name, message, "a motion that a platform may have")
+            yield from beyond(limits, size / length, name, message, "a motion that a platform may have")
     if record.noise_declared and record.degree_of_freedom is not None:
         name = record.degree_of_freedom
         spread, noise = float(np.std(record.values[name])), record.noise[name]
         message = f"noise is stated as {_in_words(name, noise)}, where the motion's own deviation is {_in_words(name, spread)}"
-        yield from found((MAX_NOISE_SHARE, np.inf), noise / spread, name, message, "")
+        yield from beyond((MAX_NOISE_SHARE, np.inf), noise / spread, name, message, "")
     if record.wave is not None and record.kind in IN_WAVES:
         step = float(np.median(np.diff(record.time)))
         height = wave_height(record.wave, record.kind == "irregular")
         wavelength = gravity / (2 * np.pi) * record_peak_period(record.wave, step) ** 2
         message = f"waves {height:.3g} m high and {wavelength:.3g} m long {FULL_SCALE}: {UNIT_OR_SCALE}"
-        yield from found(
+        yield from beyond(
             STEEPNESS_LIMITS, height / wavelength, "wave", message, "waves that do not break, less than 1/7 as high as long"
         )
 

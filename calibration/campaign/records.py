@@ -56,8 +56,8 @@ class Series:
         good = valid_values(self.time)
         for values in self.values.values():
             good = good & valid_values(values)
-        at = np.flatnonzero(good)
-        good[at[1:][np.diff(self.time[at]) == 0]] = False
+        index = np.flatnonzero(good)
+        good[index[1:][np.diff(self.time[index]) == 0]] = False
         return good
 
 
@@ -81,7 +81,10 @@ class Record:
 
 
 def valid_values(values: np.ndarray) -> np.ndarray:
-    """(n,) bool: neither missing nor infinite, nor so large that it stands for that, nor a logger's number for it."""
+    """Whether each value is a measurement, (n,) bool.
+
+    False for a missing or infinite value, one so large that it stands for a missing one, and a logger's number for that.
+    """
     good = np.abs(values) < _LARGEST_VALUE  # False for nan
     code = missing_code(values[good])
     return good if code is None else good & (values != code)
@@ -140,9 +143,9 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
             problems.append(Problem(where, f"a column {column!r}", ", ".join(names[:12]), suggest(column, names)))
         else:
             number = names.index(column) if isinstance(column, str) else column
-            cells, other = table.iloc[:, number], taken.setdefault(number, channel)
-            if other != channel:
-                problems.append(Problem(where, "a column of its own", f"that of channel {other}, {column!r}"))
+            cells, owner = table.iloc[:, number], taken.setdefault(number, channel)
+            if owner != channel:
+                problems.append(Problem(where, "a column of its own", f"that of channel {owner}, {column!r}"))
             elif names[number] in table.attrs.get("times", ()) and (channel != "time" or stated.unit != "s"):
                 expected = "unit: s, since such times are read as seconds" if channel == "time" else "numbers"
                 problems.append(Problem(where, expected, f"times in column {column!r}, stated in {stated.unit}"))
@@ -151,14 +154,14 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
                 if (unit := table.attrs.get("stated", {}).get(names[number])) is not None:
                     units[channel] = unit
             elif mistakes := table.attrs.get("not_numbers", {}).get(number):
-                problems += [replace(one, where=f"{test.file}, {one.where}") for one in mistakes]
+                problems += [replace(mistake, where=f"{test.file}, {mistake.where}") for mistake in mistakes]
             else:
                 row = f" in row {table.attrs['row']}" if "row" in table.attrs else ""
                 problems.append(Problem(where, f"numbers in column {column!r}", f"text such as {cells.iloc[0]!r}{row}"))
     if problems:
         raise InputError(test.file, problems)
     time = columns.pop("time")
-    known = time[valid_values(time)]
+    valid = time[valid_values(time)]
     rows = _rows(time, test.window)
     zero = manifest.zero.window if manifest.zero is not None else None
     still = _rows(time, zero) if zero is not None else np.arange(0)
@@ -167,7 +170,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
         time[rows],
         {name: values[rows] for name, values in columns.items()},
         channels,
-        (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan),
+        (float(valid.min()), float(valid.max())) if len(valid) else (np.nan, np.nan),
         rows,
         {name: values[still][valid_values(values[still])] for name, values in columns.items()},
         units,
@@ -177,19 +180,26 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
 
 
 def _free(series: Series) -> Series:
-    """A decay from its release to the next push or to where the model is caught, or to the end of its `window`."""
+    """Cut a decay to its free motion.
+
+    It begins at the release. It ends at the next push or where the model is caught; with a stated `window`, at the window's
+    end.
+    """
     good = np.flatnonzero(series.good)
     free = free_motion(series.time[good], series.values[str(series.test.degree_of_freedom)][good])
     if free.start == free.end == "record":
         return series
     last = good[free.last - 1] if series.test.window is None else len(series.time) - 1  # what is stated is respected
-    kept = slice(good[free.first], last + 1)
-    values = {name: column[kept] for name, column in series.values.items()}
-    return replace(series, time=series.time[kept], values=values, rows=series.rows[kept], free=free)
+    free_rows = slice(good[free.first], last + 1)
+    values = {name: column[free_rows] for name, column in series.values.items()}
+    return replace(series, time=series.time[free_rows], values=values, rows=series.rows[free_rows], free=free)
 
 
 def _rows(time: np.ndarray, window: tuple[float, float] | None) -> np.ndarray:
-    """The stretch of rows from the first in the window to the last: what has no time of its own is among them."""
+    """Rows from the first to the last whose time is in a window, (n,) indices.
+
+    Rows between them that have no time of their own are included. Without a window, all rows are.
+    """
     if window is None:
         return np.arange(len(time))
     inside = np.flatnonzero((time >= window[0]) & (time <= window[1]))
@@ -197,24 +207,32 @@ def _rows(time: np.ndarray, window: tuple[float, float] | None) -> np.ndarray:
 
 
 def still_water(manifest: Manifest, series: tuple[Series, ...]) -> tuple[dict[str, float], ...]:
-    """For each series, channel -> reading in still water, m and rad at full scale; nothing where none is stated."""
+    """Readings of all channels in still water.
+
+    Args:
+        manifest: The manifest of the campaign.
+        series: The tests as they are in their files.
+
+    Returns:
+        For each series, channel -> mean reading (m, rad at full scale); empty where the manifest states no zero.
+    """
     zero = manifest.zero
     if zero is None:
         return tuple({} for _ in series)
 
-    def means(one: Series, values: dict[str, np.ndarray]) -> dict[str, float]:
-        scale = unit_factors(manifest, one.channels)
+    def means(test_series: Series, values: dict[str, np.ndarray]) -> dict[str, float]:
+        scale = unit_factors(manifest, test_series.channels)
         return {name: float(np.mean(v)) * scale[name] for name, v in values.items() if len(v)}
 
     if zero.window is not None:
-        return tuple(means(one, one.still) for one in series)
-    rest = next(one for one in series if one.test.id == zero.test)
+        return tuple(means(test_series, test_series.still) for test_series in series)
+    rest = next(test_series for test_series in series if test_series.test.id == zero.test)
     return (means(rest, {name: values[rest.good] for name, values in rest.values.items()}),) * len(series)
 
 
 def records_of(manifest: Manifest, series: tuple[Series, ...]) -> tuple[Record, ...]:
     """The records of series that `checks` let pass."""
-    return tuple(_record(manifest, one, zeros) for one, zeros in zip(series, still_water(manifest, series)))
+    return tuple(_record(manifest, test_series, zeros) for test_series, zeros in zip(series, still_water(manifest, series)))
 
 
 def load_records(manifest: Manifest, folder: Path) -> tuple[Record, ...]:
@@ -223,7 +241,19 @@ def load_records(manifest: Manifest, folder: Path) -> tuple[Record, ...]:
 
 
 def whole_series(manifest: Manifest, folder: Path, test: Test) -> tuple[Series, dict[str, float]]:
-    """All that a test's file has, its window left aside, and its readings in still water. Raises InputError."""
+    """Read all that a test's file has, without the test's window.
+
+    Args:
+        manifest: The manifest of the campaign.
+        folder: Folder of the data files.
+        test: The test.
+
+    Returns:
+        The series, and its readings in still water by channel (m, rad at full scale).
+
+    Raises:
+        InputError: The file cannot be read.
+    """
     rest = [other for other in manifest.tests if manifest.zero is not None and other.id == manifest.zero.test]
     tests = (test.model_copy(update={"window": None}), *rest)
     series = read_series(manifest.model_copy(update={"tests": tests}), folder)
@@ -231,7 +261,10 @@ def whole_series(manifest: Manifest, folder: Path, test: Test) -> tuple[Series, 
 
 
 def frozen_channels(series: Series) -> set[str]:
-    """Motions of a test that moves which have one value throughout, where others have not: not measured, `checks` says so."""
+    """Motions of a test that have one value throughout, though others change.
+
+    They were not measured; `checks` says so. Empty for tests that are neither decays nor in waves, and where no motion changes.
+    """
     if series.test.kind != "decay" and series.test.kind not in IN_WAVES:
         return set()
     good, motions = series.good, set(series.values) - {WAVE}

@@ -34,8 +34,14 @@ MIN_SAMPLES_PER_CYCLE = 8  # samples per cycle
 class FreeMotion:
     """The rows of a decay that move freely, [first, last), and what comes before and after them.
 
-    `held_until` is when the release or push ended the stillness (the time's unit), `level` where it stood (the channel's
-    unit); `ended_at` is when the free motion was ended.
+    Attributes:
+        first: Index of the first row that moves freely.
+        last: Index after the last row that moves freely.
+        start: Event that begins the free motion; the record: it is free from the first row.
+        end: Event that ends the free motion; the record: it is free up to the last row.
+        held_until: Time at which the release or push ended the stillness (the time's unit).
+        level: Value at which the motion stood until then (the channel's unit).
+        ended_at: Time at which the free motion was ended (the time's unit).
     """
 
     first: int
@@ -72,27 +78,38 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
     ):
         return whole
     y = ndimage.uniform_filter1d(x, max(int(SMOOTHING_DURATION * period / step), 1), mode="nearest")
-    found = _first_decay(x, y, period / step, noise)
-    if found is None:
+    decay = _first_decay(x, y, period / step, noise)
+    if decay is None:
         return whole
-    first, last, start, end, held, level = found
-    at = even[0] + step * np.array([first, last, held])
-    rows = np.searchsorted(time, at[:2] - 1e-9 * step)
+    first, last, start, end, held, level = decay
+    times = even[0] + step * np.array([first, last, held])
+    rows = np.searchsorted(time, times[:2] - 1e-9 * step)
     return FreeMotion(
         int(rows[0]) if start != "record" else 0,
         int(rows[1]) if end != "record" else len(time),
         start,
         end,
-        float(at[2]),
+        float(times[2]),
         level,
-        float(at[1]),
+        float(times[1]),
     )
 
 
 def _first_decay(
     x: np.ndarray, y: np.ndarray, period: float, sigma: float
 ) -> tuple[float, float, Literal["record", "release", "push"], Literal["record", "catch", "push"], float, float] | None:
-    """The bounds of the first decay, what bounds it, the end of the stillness before it and its level; in samples."""
+    """Find the bounds of the first decay in an evenly sampled record.
+
+    Args:
+        x: (n,) the motion.
+        y: (n,) the motion, smoothed.
+        period: Its period (samples).
+        sigma: Standard deviation of the noise of `x`.
+
+    Returns:
+        First and last sample of the decay; the events that begin and end it; the end of the stillness before it (samples), and
+        the level there (unit of `x`). None where there is no decay.
+    """
     size, width, cycle = 0.5 * float(np.ptp(y)), round(STILLNESS_DURATION * period), round(period)
     noise = NOISE_MARGIN * sigma / max(SMOOTHING_DURATION * period, 1) ** 0.5
     spread = _range(y, width)
@@ -124,8 +141,8 @@ def _first_decay(
             first = float(large[0] if large else turns[0])
         elif abs(level - rest) > 0.5 * amplitude:
             least, most = max(since, begin - cycle // 3), begin + cycle // (5 if i else 2)
-            held, left = _find_release(x, least, most, level - rest, cycle)
-            if i or (held - begin > MIN_VISIBLE_HOLD * cycle and left < MAX_HOLD_MISFIT * amplitude + 1.5 * sigma):
+            held, misfit = _find_release(x, least, most, level - rest, cycle)
+            if i or (held - begin > MIN_VISIBLE_HOLD * cycle and misfit < MAX_HOLD_MISFIT * amplitude + 1.5 * sigma):
                 start, first = "release", held + RELEASE_DELAY * cycle
         later = (
             np.diff(_turning_points(y, still, min(still + 12 * cycle, len(y)), max(PEAK_PROMINENCE * size, 3 * noise))) / cycle
@@ -171,12 +188,25 @@ def _find_end(
 
 
 def _find_release(x: np.ndarray, first: int, last: int, fall: float, cycle: int) -> tuple[float, float]:
-    """When (samples) a held motion is let go, by least squares: level until then, and the begin of a cosine; what is left."""
+    """Find when a held motion is let go, by least squares.
+
+    The motion is level until then, and the begin of a cosine after it.
+
+    Args:
+        x: (n,) the motion.
+        first: Earliest sample of the release.
+        last: Latest sample of the release.
+        fall: Level less the position of rest (unit of `x`).
+        cycle: Period (samples).
+
+    Returns:
+        The release (samples), and the root mean square of the residual (unit of `x`).
+    """
     best = (np.inf, float(first))
-    for at in np.arange(first, last, 0.25):
-        rows = np.arange(first, min(int(at) + cycle // 8 + 2, len(x)))
-        left = x[rows] + np.where(rows > at, fall * (1 - np.cos(2 * np.pi * (rows - at) / cycle)), 0.0)
-        best = min(best, (float(np.mean((left - left.mean()) ** 2)), float(at)))
+    for release in np.arange(first, last, 0.25):
+        rows = np.arange(first, min(int(release) + cycle // 8 + 2, len(x)))
+        residual = x[rows] + np.where(rows > release, fall * (1 - np.cos(2 * np.pi * (rows - release) / cycle)), 0.0)
+        best = min(best, (float(np.mean((residual - residual.mean()) ** 2)), float(release)))
     return best[1], best[0] ** 0.5
 
 
@@ -185,14 +215,14 @@ def _turning_points(y: np.ndarray, begin: int, end: int, prominence: float) -> n
     part = y[begin:end]
     high, low = (signal.find_peaks(sign * part, prominence=prominence)[0] for sign in (1, -1))
     both = sorted([*((k, 1) for k in high), *((k, -1) for k in low)])
-    kept: list[tuple[int, int]] = []
-    for place, sign in both:
-        if kept and kept[-1][1] == sign:
-            if sign * part[place] > sign * part[kept[-1][0]]:
-                kept[-1] = (place, sign)
+    turns: list[tuple[int, int]] = []
+    for index, sign in both:
+        if turns and turns[-1][1] == sign:
+            if sign * part[index] > sign * part[turns[-1][0]]:
+                turns[-1] = (index, sign)
         else:
-            kept.append((place, sign))
-    return np.array([place + begin for place, _ in kept], int)
+            turns.append((index, sign))
+    return np.array([index + begin for index, _ in turns], int)
 
 
 def _range(y: np.ndarray, width: int) -> np.ndarray:
@@ -209,16 +239,27 @@ def _true_stretches(flag: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _period(x: np.ndarray, step: float, noise: float) -> float:
-    """The period in which the speed has its highest peak, a tenth of the frequency wide, above what the noise has there."""
+    """Period of the highest peak in the spectrum of the speed.
+
+    The power is averaged over a tenth of the frequency, and the expected power of the noise is subtracted.
+
+    Args:
+        x: (n,) the motion, evenly sampled.
+        step: Time step, in any unit.
+        noise: Standard deviation of the noise of `x`.
+
+    Returns:
+        The period in the unit of `step`; infinite where the record resolves no frequency.
+    """
     speed = np.diff(x)
     frequency = np.fft.rfftfreq(4 * len(speed), step)
     power = np.abs(np.fft.rfft(speed, 4 * len(speed))) ** 2
-    known = np.flatnonzero(frequency <= 1 / (MIN_SAMPLES_PER_CYCLE * step))[1:]
-    if not len(known):
+    resolved = np.flatnonzero(frequency <= 1 / (MIN_SAMPLES_PER_CYCLE * step))[1:]
+    if not len(resolved):
         return np.inf
     total = np.concatenate([[0.0], np.cumsum(power)])
-    low, high = np.floor(known / 1.05).astype(int), np.minimum(np.ceil(known * 1.05).astype(int) + 1, len(power))
+    low, high = np.floor(resolved / 1.05).astype(int), np.minimum(np.ceil(resolved * 1.05).astype(int) + 1, len(power))
     mean = (total[high] - total[low]) / (high - low)
-    mean -= 2 * len(speed) * (2 * noise * np.sin(np.pi * frequency[known] * step)) ** 2
+    mean -= 2 * len(speed) * (2 * noise * np.sin(np.pi * frequency[resolved] * step)) ** 2
     best = int(np.argmax(mean))
     return float(1 / frequency[low[best] + max(int(np.argmax(power[low[best] : high[best]])), low[best] == 0)])

@@ -48,13 +48,19 @@ class Run:
         return float(self.time[1] - self.time[0])
 
     def samples(self, record: Record) -> np.ndarray:
-        """Index into `time` of every sample of a record: times in a file are rounded, the clock behind them is not."""
+        """Index into `time` of every sample of a record.
+
+        Times in a file are rounded, the clock behind them is not.
+        """
         return np.clip(np.rint((record.time - self.time[0]) / self.step).astype(int), 0, len(self.time) - 1)
 
 
 def runs(campaign: Campaign) -> tuple[Run, ...]:
-    """The runs of all tests in waves that are not ignored. Raises InputError where there is none, or a wave record has no even
-    clock, gaps or nothing."""
+    """The runs of all tests in waves that are not ignored.
+
+    Raises:
+        InputError: There is no such test, or a wave record has no even clock, has gaps or is empty.
+    """
     source = str(campaign.folder / "campaign.yaml")
     groups: dict[tuple[str, str, str], list[Record]] = {}
     for record in campaign.records:
@@ -63,10 +69,10 @@ def runs(campaign: Campaign) -> tuple[Run, ...]:
             key = (test.file, repr(test.sea), repr(campaign.manifest.channels_of(test)))
             groups.setdefault(key, []).append(record)
     if not groups:
-        found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
+        actual = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
         expected = "at least one irregular or regular test that is not ignored"
         hint = f"A decay: jaxhydro simulate {platform_source(campaign.manifest, campaign.folder)} --release MOTION=VALUE."
-        raise InputError(source, [Problem("tests", expected, found, hint)])
+        raise InputError(source, [Problem("tests", expected, actual, hint)])
     problems: list[Problem] = []
     found_runs = []
     for group in groups.values():
@@ -86,8 +92,8 @@ def _run(campaign: Campaign, records: Sequence[Record]) -> Run:
     if WAVE not in series.values:
         raise InputError(where, [Problem(f"{where} of test {test.id}", "a wave channel, since waves drive it", "none")])
     scale = unit_factors(manifest, series.channels)
-    kept = valid_values(series.time) & valid_values(series.values[WAVE])
-    time, wave = series.time[kept], series.values[WAVE][kept]
+    valid = valid_values(series.time) & valid_values(series.values[WAVE])
+    time, wave = series.time[valid], series.values[WAVE][valid]
     first = np.concatenate([[True], np.diff(time) != 0])
     even, wave, missing = on_even_clock(time[first], wave[first], where, series.channels["time"].unit)
     notes = [f"{where}: {missing} samples are missing, and drawn straight"] if missing else []
@@ -106,10 +112,23 @@ def _run(campaign: Campaign, records: Sequence[Record]) -> Run:
 
 
 def on_even_clock(time: np.ndarray, values: np.ndarray, where: str, unit: str) -> tuple[np.ndarray, np.ndarray, int]:
-    """The even clock behind written times, values on it, and how many had to be drawn straight. Raises InputError."""
+    """Fit an even clock to written times, and interpolate values onto it.
 
-    def wrong(expected: str, found: str) -> InputError:
-        return InputError(where, [Problem(where, expected, found)])
+    Args:
+        time: (n,) times as written.
+        values: (n,) values.
+        where: File and channel, for messages.
+        unit: Unit of the times.
+
+    Returns:
+        Even times (m,), values at them (m,), and the number of samples that are interpolated.
+
+    Raises:
+        InputError: There are too few samples, times that do not increase, uneven steps, or a gap that is too long.
+    """
+
+    def wrong(expected: str, actual: str) -> InputError:
+        return InputError(where, [Problem(where, expected, actual)])
 
     steps = np.diff(time)
     if len(time) < MIN_SAMPLES:

@@ -24,18 +24,20 @@ def second_order_hint(recorded: Sequence[tuple[Run, IrregularSea]], band: tuple[
         band: Lowest and highest frequency (Hz) of first-order waves.
 
     Returns:
-        The remark; empty where the records have what is visible of theory.
+        The remark; empty where the records have the visible part of theory's waves.
     """
     shares = np.array([_shares(run, sea, *band) for run, sea in recorded])
-    seen = [shares[np.isfinite(shares[:, i]), i] for i in range(2)]
-    lacking = [kind for kind, some in zip(KINDS, seen) if some.size and np.median(some) < MIN_SECOND_ORDER_SHARE]
+    visible = [shares[np.isfinite(shares[:, i]), i] for i in range(2)]
+    lacking = [kind for kind, values in zip(KINDS, visible) if values.size and np.median(values) < MIN_SECOND_ORDER_SHARE]
     if not lacking:
         return ()
-    left = [kind for kind, some in zip(KINDS, seen) if some.size and kind not in lacking]
+    present = [kind for kind, values in zip(KINDS, visible) if values.size and kind not in lacking]
     percent = " and ".join(
-        f"{100 * max(0.0, float(np.median(some))):.0f} % at {kind}s" for kind, some in zip(KINDS, seen) if kind in lacking
+        f"{100 * max(0.0, float(np.median(values))):.0f} % at {kind}s"
+        for kind, values in zip(KINDS, visible)
+        if kind in lacking
     )
-    key = f"{{kinds: [{left[0]}]}}" if left else "{order: 1}"
+    key = f"{{kinds: [{present[0]}]}}" if present else "{order: 1}"
     return (
         f"of the second-order waves that theory binds to waves of this height the records have {percent} of frequencies; "
         f"if they were recorded so, state `records: {key}` in campaign.yaml",
@@ -43,7 +45,11 @@ def second_order_hint(recorded: Sequence[tuple[Run, IrregularSea]], band: tuple[
 
 
 def _shares(run: Run, sea: IrregularSea, low: float, cutoff: float) -> tuple[float, float]:
-    """Fractions of theory's second-order elevation in a record above and below the first-order band; NaN: not visible."""
+    """Fractions of theory's second-order elevation that a record has.
+
+    Returns:
+        The fractions above and below the first-order band (-); NaN: not visible.
+    """
     first = sea.gauge(run.time, run.position, order=1)
     second = sea.gauge(run.time, run.position) - first
     taper = np.hanning(len(first))

@@ -10,7 +10,10 @@ from jaxhydro.errors import Faults, Gamma, Number, Positive, Problem, Schema, Se
 
 
 class System(Schema):
-    """A wave system of a sea, wind sea or swell, with the keys of `jaxhydro simulate --sea`; m and s as in the files."""
+    """A wave system of a sea: wind sea or swell.
+
+    Its keys are those of `jaxhydro simulate --sea`; lengths and times (m, s) are as in the files.
+    """
 
     hs: Positive
     tp: Positive
@@ -44,10 +47,10 @@ class Sea(Schema):
     @property
     def long_crested(self) -> bool:
         """Whether all waves travel one way."""
-        headings = {one.heading % 360 for one in self.systems}
-        return self.spreading is None and len(headings) < 2 and all(one.spreading is None for one in self.systems)
+        headings = {system.heading % 360 for system in self.systems}
+        return self.spreading is None and len(headings) < 2 and all(system.spreading is None for system in self.systems)
 
     @property
     def mean_heading(self) -> float:
         """Heading of the sea, or of its highest system (deg)."""
-        return max(self.systems, key=lambda one: one.hs).heading if self.systems else self.heading
+        return max(self.systems, key=lambda system: system.hs).heading if self.systems else self.heading

@@ -76,11 +76,11 @@ def read_stated_size(value: Any) -> StatedSize:
     if isinstance(value, str):
         number, unit = split_quantity(value) or (0.0, "")
         try:
-            known = Unit(0.01, ()) if unit == SHARE else parse_unit(unit or "-")
+            parsed = Unit(0.01, ()) if unit == SHARE else parse_unit(unit or "-")
         except UnknownUnit as error:
             expected = f"a unit of {', '.join(SYMBOLS)} or {SHARE}, and products of these such as N s2/m2"
             raise Faults(Problem("", expected, shown(value), suggest(error.args[0], SYMBOLS))) from None
-        size = StatedSize(number * known.factor, None if unit == SHARE else known, unit == SHARE)
+        size = StatedSize(number * parsed.factor, None if unit == SHARE else parsed, unit == SHARE)
     else:
         number = float(value) if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
         size = StatedSize(number, None, False)

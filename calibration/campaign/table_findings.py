@@ -28,12 +28,15 @@ def platform_findings(model: Model, file: str) -> tuple[Finding, ...]:
 
 
 def check_tables(records: Sequence[Record], model: Model, band: tuple[float, float]) -> tuple[Finding, ...]:
-    """Findings on tests in waves that are outside a table of the model, one that a diagnosis may let in included.
+    """Findings on tests in waves that are outside a table of the model.
 
-    `band` (Hz) has the first-order waves.
+    Tables that a diagnosis may let in are included. An irregular sea with more than 1 % of its energy outside is warned of. A
+    regular wave outside is an error; a warning where the table is a candidate's.
 
-    An irregular sea with more than 1 % of its energy outside is warned of. A regular wave outside is an error; a warning where
-    the table is a candidate's.
+    Args:
+        records: Records of the campaign.
+        model: Model of the platform file.
+        band: Lowest and highest frequency (Hz) of the first-order waves.
     """
     ranges, acting = table_ranges(model, candidates=True), table_ranges(model)
     return tuple(
@@ -48,23 +51,23 @@ def _record_findings(
     record: Record, ranges: tuple[TableRange, ...], acting: tuple[TableRange, ...], limits: tuple[float, float]
 ) -> Iterator[Finding]:
     assert record.wave is not None
-    kept = record.time >= record.time[0] + record.transient
-    time = np.linspace(record.time[kept][0], record.time[-1], int(kept.sum()))
+    compared = record.time >= record.time[0] + record.transient
+    time = np.linspace(record.time[compared][0], record.time[-1], int(compared.sum()))
     spectrum = power_spectrum(time, np.interp(time, record.time, record.wave))
     band = (spectrum.frequency >= limits[0]) & (spectrum.frequency <= limits[1])
     if not band.any() or not spectrum.density[band].sum() > 0:
         return
     omega, density = 2 * math.pi * spectrum.frequency[band], spectrum.density[band]
-    for one in ranges:
+    for table in ranges:
         if record.kind == "regular":
             peak = float(omega[np.argmax(density)])
-            if one.outside(np.array([peak]))[0]:
-                expected = f"a wave within the {one.key} table, which has {one.words}"
+            if table.outside(np.array([peak]))[0]:
+                expected = f"a wave within the {table.key} table, which has {table.words}"
                 message = f"a regular wave of {2 * math.pi / peak:.4g} s ({peak:.4g} rad/s, full scale)"
-                if one in acting:
+                if table in acting:
                     yield Finding("error", record.file, record.id, WAVE, None, message, expected)
                 else:
-                    outside = f"{message} is outside the {one.key} table, a candidate, which has {one.words}"
+                    outside = f"{message} is outside the {table.key} table, a candidate, which has {table.words}"
                     yield Finding("warning", record.file, record.id, WAVE, None, outside)
-        elif (remark := one.remark(one.share_outside(omega, density))) is not None and remark.warning:
+        elif (remark := table.remark(table.share_outside(omega, density))) is not None and remark.warning:
             yield Finding("warning", record.file, record.id, WAVE, None, remark.text)

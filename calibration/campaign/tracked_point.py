@@ -30,8 +30,8 @@ def missing_angles(point: Point, channels: Collection[str]) -> Iterator[Problem]
 def move_to_reference(values: Mapping[str, np.ndarray], point: Point) -> dict[str, np.ndarray]:
     """Motions of the reference point, from those of a tracked point.
 
-    y = p + R o - o, with y recorded, p of the reference point, o the point in body axes and R the rotation by roll, pitch and
-    yaw. Angles are those of any point. An angle that is not recorded is zero.
+    y = p + R o - o. Here y is the recorded motion, and p that of the reference point. The point in body axes is o, and R the
+    rotation by roll, pitch and yaw. Angles are those of any point. An angle that is not recorded is zero.
 
     Args:
         values: Recorded motion by name, all of one length (m, rad).
@@ -50,10 +50,13 @@ def move_to_reference(values: Mapping[str, np.ndarray], point: Point) -> dict[st
 
 
 def noise_moved_to_reference(noise: Mapping[str, float], point: Point) -> dict[str, float]:
-    """Standard deviations of the noise (m, rad) after `move_to_reference`: that of the angles comes in by their levers."""
-    found = dict(noise)
+    """Standard deviations of the noise (m, rad) after `move_to_reference`.
+
+    Noise of the angles adds to that of the translations by their levers.
+    """
+    moved = dict(noise)
     for motion, angles in LEVERS.items():
         if motion in noise:
             parts = [noise[motion], *(point[axis] * noise.get(angle, 0.0) for angle, axis in angles.items())]
-            found[motion] = float(np.linalg.norm(parts))
-    return found
+            moved[motion] = float(np.linalg.norm(parts))
+    return moved

@@ -11,7 +11,16 @@ from jaxhydro.waves import wave_bands
 
 
 def band_sentence(manifest: Manifest, model: Model, records: Sequence[Record]) -> str | None:
-    """Return the band of first-order waves in words, and what it comes from; None for a campaign without tests in waves."""
+    """Describe the band of first-order waves and where it is from.
+
+    Args:
+        manifest: The manifest of the campaign.
+        model: Model of the platform file.
+        records: Records of the campaign.
+
+    Returns:
+        The description; None for a campaign without tests in waves.
+    """
     if not any(record.kind in IN_WAVES and record.use != "ignore" for record in records):
         return None
     band = wave_band(manifest, model, records)

@@ -17,7 +17,16 @@ MIN_LASTING_SHARE = 0.7  # of the amplitude a sixth of the record before: less d
 
 
 def wave_span(time: np.ndarray, wave: np.ndarray, period: float) -> tuple[float, float]:
-    """Return the first and last time between which waves are as high as usual; all of the record where it is short."""
+    """Return the first and last time between which waves are as high as usual.
+
+    Args:
+        time: (n,) times.
+        wave: (n,) surface elevation.
+        period: Period of the waves, in the unit of `time`.
+
+    Returns:
+        Both times; those of the whole record where it is short.
+    """
     step = float(np.median(np.diff(time)))
     width = round(AVERAGING_CYCLES * period / step)
     if len(wave) < 4 * width:
@@ -38,7 +47,16 @@ def begun_before(time: np.ndarray, wave: np.ndarray, period: float) -> bool:
 
 
 def waves_left(time: np.ndarray, values: np.ndarray, natural: float) -> tuple[float, float] | None:
-    """Return period and amplitude of a fast oscillation that goes on in the last third of a decay; None without one."""
+    """Return period and amplitude of a fast oscillation that goes on in the last third of a decay.
+
+    Args:
+        time: (n,) times.
+        values: (n,) the released motion.
+        natural: Natural period, in the unit of `time`.
+
+    Returns:
+        Period and amplitude, in the units of `time` and `values`; None without such an oscillation.
+    """
     tail = len(values) * 2 // 3
     late_time, late = time[tail:], values[tail:]
     period = dominant_period(late_time, late)
@@ -51,7 +69,16 @@ def waves_left(time: np.ndarray, values: np.ndarray, natural: float) -> tuple[fl
 
 
 def waves_of_others(time: np.ndarray, wave: np.ndarray, natural: float | None) -> tuple[float, float] | None:
-    """Return period and amplitude of waves in a decay that the model itself does not radiate; None without them."""
+    """Return period and amplitude of waves in a decay that the model itself does not radiate.
+
+    Args:
+        time: (n,) times.
+        wave: (n,) surface elevation.
+        natural: Natural period of the released motion, in the unit of `time`; None where it is not clear.
+
+    Returns:
+        Period and amplitude, in the units of `time` and `wave`; None without such waves.
+    """
     period = dominant_period(time, wave)
     size = 2**0.5 * float(np.std(wave))
     if period is None or size < MIN_NOISE_RATIO * noise_level(time, wave):

@@ -1,4 +1,4 @@
-"""Directions of the waves of a test whose elevation was measured by one gauge, from the directional spectrum that is stated."""
+"""Directions of waves that one gauge measured, from a stated directional spectrum."""
 
 import dataclasses
 import math
@@ -54,8 +54,8 @@ class StatedDirections:
             position: Position of the gauge (m).
         """
         turned = dataclasses.replace(waves, heading=jnp.asarray(self.headings(waves)))
-        there = jnp.asarray(position, float)
-        return dataclasses.replace(turned, phase=waves.phase + there @ (turned.vector() - waves.vector()))
+        gauge = jnp.asarray(position, float)
+        return dataclasses.replace(turned, phase=waves.phase + gauge @ (turned.vector() - waves.vector()))
 
 
 def stated_directions(sea: Sea, scale: float) -> StatedDirections | None:
@@ -63,7 +63,9 @@ def stated_directions(sea: Sea, scale: float) -> StatedDirections | None:
     if sea.long_crested:
         return None
     systems = tuple(
-        WaveSystem(one.hs * scale, one.tp * math.sqrt(scale), one.gamma, one.heading, one.spreading, one.spectrum)
-        for one in sea.systems
+        WaveSystem(
+            system.hs * scale, system.tp * math.sqrt(scale), system.gamma, system.heading, system.spreading, system.spectrum
+        )
+        for system in sea.systems
     )
     return StatedDirections(math.radians(sea.mean_heading), sea.spreading, systems, sea.seed)

@@ -49,12 +49,21 @@ SEARCH_ENDINGS = {
 
 
 def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.count_tests) -> Campaign:
-    """The campaign, its warnings printed. Raises InputError, also where results would replace its own data."""
+    """Load a campaign and print its tests and warnings.
+
+    Args:
+        path: Folder or manifest of the campaign.
+        out: Folder of the results.
+        counted: Makes the text on its tests that is printed.
+
+    Raises:
+        InputError: The campaign cannot be read, or results would replace its own data.
+    """
     campaign = load_campaign(path)
     for test in campaign.manifest.tests:
         if (campaign.folder / test.file).resolve() == (out / MOTION_FILE).resolve():
-            found = f"{str(out)!r}, where {MOTION_FILE} is the data of test {test.id}"
-            raise InputError("--out", [Problem("", "another folder", found)])
+            actual = f"{str(out)!r}, where {MOTION_FILE} is the data of test {test.id}"
+            raise InputError("--out", [Problem("", "another folder", actual)])
     say(f"{campaign.manifest.name}: {counted(campaign)}")
     if (band := band_sentence(campaign.manifest, campaign.model, campaign.records)) is not None:
         say(f"{band[0].upper()}{band[1:]}")
@@ -64,8 +73,19 @@ def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.coun
 
 
 def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campaign, str]:
-    """`load` for a calibration, and to which tests it is: as asked for ("decays", "waves", "all"), else to the decays, or where
-    there is none to fit, to the tests in waves."""
+    """Load a campaign for a calibration, and choose the kind of tests to fit.
+
+    Args:
+        path: Folder or manifest of the campaign.
+        out: Folder of the results.
+        tests: "decays", "waves" or "all"; None: the decays, or the tests in waves where no decay is to be fitted.
+
+    Returns:
+        The campaign, and the kind of tests.
+
+    Raises:
+        InputError: The campaign cannot be read, or results would replace its own data.
+    """
 
     def kind(campaign: Campaign) -> str:
         kinds = {test.kind for test in campaign.manifest.tests if test.use == "fit"}
@@ -91,13 +111,29 @@ def run(
     seed: int = 0,
     seconds: float = SEARCH_SECONDS,
 ) -> Calibration | None:
-    """Calibrate, write and print the result; of a fit that the user stops, what was reached; None if that is no number.
+    """Calibrate a campaign, write and print the result.
 
-    `tests`: to "decays", to those in "waves" or to "all" kinds; in waves by `objective`. `law`, of tests in waves alone: how
-    coefficients depend on the sea state, a `Law` or "choose". `loss` is that of all kinds together. `start` is a calibration
-    whose values are begun from; `method` a global search of the decays' coefficients that finds them, from a `seed` and in so
-    many CPU `seconds`. `truth` are a synthetic campaign's true coefficients: they are compared with, and a report page is
-    made. Raises InputError, and Interrupted where nothing was reached.
+    Args:
+        campaign: The campaign.
+        out: Folder of the results.
+        figures: Whether figures are written.
+        tests: Fitted tests: "decays", those in "waves", or "all" kinds.
+        objective: Objective of tests in waves.
+        law: How coefficients depend on the sea state: a `Law`, or "choose". For tests in waves alone.
+        loss: Loss of all kinds of tests together.
+        truth: True coefficients of a synthetic campaign. The result is compared with them, and a report page is made.
+        start: Calibration whose values the fit begins from.
+        method: Global search of the decays' coefficients, whose result the fit begins from.
+        seed: Seed of the search.
+        seconds: CPU time of the search (s).
+
+    Returns:
+        The calibration. After an interruption by the user, it is what was reached. None where values are not finite.
+
+    Raises:
+        InputError: Arguments do not fit together.
+        Interrupted: The user stopped the fit before anything was reached.
+        SearchInterrupted: The user stopped the search before anything was reached.
     """
     if law != "constant" and tests != "waves":
         raise InputError("--law", [Problem("", f"--tests waves beside {law.replace('_', '-')}", f"--tests {tests}")])
@@ -117,20 +153,24 @@ def run(
     laws: SeaLaws | None = None
     begin: dict[str, Any] = {}
     if start is not None:
-        declared = campaign.model
-        used = apply_calibration(start, declared, campaign.platform.name)
+        model = campaign.model
+        used = apply_calibration(start, model, campaign.platform.name)
         # what a law adds is begun from in waves only; effects found are not declared
-        known = [k for k in used.values if k in declared.values or (tests == "waves" and k in law_labels(declared))]
-        begin = {"start": {k: used.values[k] for k in known}}
+        labels = [k for k in used.values if k in model.values or (tests == "waves" and k in law_labels(model))]
+        begin = {"start": {k: used.values[k] for k in labels}}
         _calibrated_values(used._replace(values=begin["start"]), start, campaign)
         if used.strips is not None:
             complain(f"warning: values are begun from, strips stay as the platform file has them: {start} has {used.strips}")
-        if tests != "decays" and used.seas is not None and (said := non_default_options(used.seas, (), options_of(campaign))):
-            complain(f"warning: waves are taken as the campaign states; for {start} they were otherwise: {said}")
+        if (
+            tests != "decays"
+            and used.seas is not None
+            and (changes := non_default_options(used.seas, (), options_of(campaign)))
+        ):
+            complain(f"warning: waves are taken as the campaign states; for {start} they were otherwise: {changes}")
     words: tuple[str, ...] = ()
     if method is not None:
-        values, said = _run_search(campaign, seed, seconds)
-        begin, words = {"begin": values}, (f"begun from a search: {said}",)
+        values, description = _run_search(campaign, seed, seconds)
+        begin, words = {"begin": values}, (f"begun from a search: {description}",)
     try:
         with progress() as show:
             if law == "choose":
@@ -173,9 +213,11 @@ def run(
         table("Against the true coefficients", *tables.comparison_with_truth(saved))
         say(tables.agreement_with_truth(saved))
     say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them" if truth is None else f"Open {write_report(out)}")
-    if tests == "decays" and any(not one.identifiable for one in saved.baseline.parameters.values()):
-        said = f"jaxhydro uncertainty {shlex.quote(str(campaign.folder))} --calibration {shlex.quote(str(out))} --profile '*'"
-        say(f"Intervals of what is not determined: {said}")
+    if tests == "decays" and any(not parameter.identifiable for parameter in saved.baseline.parameters.values()):
+        command = (
+            f"jaxhydro uncertainty {shlex.quote(str(campaign.folder))} --calibration {shlex.quote(str(out))} --profile '*'"
+        )
+        say(f"Intervals of what is not determined: {command}")
     if not result.converged:
         complain("not converged: the results are marked so")
     say(calibration_sentence(summary_of(saved)), "bold")
@@ -190,27 +232,31 @@ def _print_results(saved: CalibrationFile) -> None:
     table("Errors: RMSE over the motion's standard deviation, before and after", heads, rows, left=5)
     if (damping := tables.linear_quadratic(saved))[1]:
         table(tables.CLASSICAL, *damping)
-        if said := tables.damping_outside(saved):
-            complain(f"warning: {said[0].lower()}{said[1:]}")
+        if warning := tables.damping_outside(saved):
+            complain(f"warning: {warning[0].lower()}{warning[1:]}")
     if (energies := tables.bands(saved))[1]:
         table("Errors of energy in bands", *energies, left=4)
 
 
 def _run_search(campaign: Campaign, seed: int, seconds: float) -> tuple[dict[str, float], str]:
-    """Where a global search ends, and what it took; stopped by the user, where it has got to."""
+    """Run a global search and print what it took.
+
+    Returns:
+        Values at its end, or those that were reached when the user stopped it; and what it took, in words.
+    """
     try:
         with progress() as show:
-            found = search(campaign, seed=seed, budget=Budget(seconds), progress=show)
+            result = search(campaign, seed=seed, budget=Budget(seconds), progress=show)
     except ValueError as error:
         raise InputError("--method", [Problem("", "a search that can be run", str(error))]) from None
     except SearchInterrupted as stopped:
         if stopped.partial is None:
             raise
-        found = stopped.partial
-    spent = f"{found.simulations:.0f} simulations, {found.seconds:.0f} s CPU"
-    words = f"{found.method}, seed {seed}, J {found.objective:.4g}, {spent}; {SEARCH_ENDINGS[found.ended]}"
+        result = stopped.partial
+    spent = f"{result.simulations:.0f} simulations, {result.seconds:.0f} s CPU"
+    words = f"{result.method}, seed {seed}, J {result.objective:.4g}, {spent}; {SEARCH_ENDINGS[result.ended]}"
     say(f"Search: {words}")
-    return found.values, words
+    return result.values, words
 
 
 def simulate_campaign(
@@ -221,10 +267,22 @@ def simulate_campaign(
     asked: Mapping[str, Any] | None = None,
     figures: bool = True,
 ) -> bool:
-    """Simulate a campaign's tests in their measured waves, compare, write and print; False where a motion grows without bound.
+    """Simulate a campaign's tests in their measured waves, compare, write and print.
 
-    `asked` are fields of `Options`; others are those of a diagnosis of this campaign, but for how waves are bound and act where
-    the order is asked for. Raises InputError, EquilibriumError.
+    Args:
+        campaign: Folder or manifest of the campaign.
+        out: Folder of the results.
+        calibration: Calibration whose values are used; None: those of the platform file.
+        asked: Fields of `Options`. Other fields are those of a diagnosis of this campaign, where the calibration is one. If the
+            order is asked for, how waves are bound and act is the default.
+        figures: Whether figures are written.
+
+    Returns:
+        False where a motion grows without bound.
+
+    Raises:
+        InputError: The campaign or the calibration cannot be used.
+        EquilibriumError: The platform does not float at rest.
     """
     begun = clock.monotonic()
     loaded = load(campaign, out, sea_tables.counted)
@@ -243,23 +301,23 @@ def simulate_campaign(
     if not options.cutoff > options.low:
         expected = f"a number above {options.low:g} Hz, where first-order waves begin"
         raise InputError("--cutoff", [Problem("", expected, f"{options.cutoff:g}")])
-    if seas is not None and (said := non_default_options(options, asked)):
-        say(f"Seas as they were when these were found: {said}")
+    if seas is not None and (changes := non_default_options(options, asked)):
+        say(f"Seas as they were when these were found: {changes}")
     stable_modes(model)
     try:
-        found = compare(loaded, model, options, lambda line: say(line, stderr=True))
+        comparison = compare(loaded, model, options, lambda line: say(line, stderr=True))
     except Diverged as error:
         complain(f"{error}; nothing was written")
         return False
     content = document(
-        found,
+        comparison,
         options,
         campaign=loaded.manifest.name,
         platform=loaded.platform.name,
         calibration=None if calibration is None else str(calibration),
         applied=used,
     )
-    written = write_comparison(found, content, out, figures)
+    written = write_comparison(comparison, content, out, figures)
     for note in written.warnings:
         complain(f"warning: {note}")
     table("Waves", *sea_tables.seas_table(written), left=3)
@@ -271,7 +329,7 @@ def simulate_campaign(
 
 
 def _calibrated_values(used: AppliedCalibration, source: Path, campaign: Campaign) -> None:
-    """Which calibrated values are used, and what is to be said of them."""
+    """Print which calibrated values are used, and warn where they say little."""
     if used.campaign != campaign.manifest.name:
         complain(f"warning: {source} is a calibration of {used.campaign!r}, used for {campaign.manifest.name!r}")
     say(f"Calibrated values used: {', '.join(used.values)}")

@@ -1,4 +1,4 @@
-"""Command `check`: what a campaign holds, and whether its records and its model fit together. Nothing is fitted."""
+"""Command `check`: content of a campaign, and how records and model fit together. Nothing is fitted."""
 
 import shlex
 from pathlib import Path

@@ -20,11 +20,22 @@ from jaxhydro.cli.console import complain, progress, say, table
 
 
 def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
-    """Diagnose a campaign, write and print the result; of a search that the user stops, what was reached. One that was stopped
-    or killed goes on from the last effect that it had let in.
+    """Diagnose a campaign, write and print the result.
 
-    False where a fit did not converge: the result is marked so, or there is none. Raises InputError, and KeyboardInterrupt
-    where nothing was reached.
+    If the user stops the search, the result covers the effects found so far. A search that was stopped or killed goes on from
+    the last effect that it had let in.
+
+    Args:
+        path: Folder or manifest of the campaign.
+        out: Folder of the results.
+        figures: Whether figures are written.
+
+    Returns:
+        False where a fit did not converge. The result is then marked so, or there is none.
+
+    Raises:
+        InputError: The campaign cannot be read.
+        KeyboardInterrupt: The user stopped the search before anything was reached.
     """
     from calibration.discovery.diagnose import diagnose
 
@@ -62,9 +73,9 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
 
 
 def mark_unfinished(partial: Diagnosis) -> Diagnosis:
-    """What was reached when the user stopped the search, marked as not complete and not converged.
+    """Mark a diagnosis that the user stopped as not complete and not converged.
 
-    That nothing is missing is for a whole search to say: the verdict of a stopped one is then "unexplained".
+    Only a whole search can find that nothing is missing. The verdict of a stopped one is then "unexplained".
     """
     verdict = Outcome.UNEXPLAINED if partial.verdict == Outcome.NOTHING_MISSING else partial.verdict
     fitted, notes = replace(partial.augmented, converged=False), (words.STOPPED, *partial.notes)
@@ -72,7 +83,12 @@ def mark_unfinished(partial: Diagnosis) -> Diagnosis:
 
 
 def show_diagnosis(saved: DiagnosisFile, notes: list[str]) -> None:
-    """Print what was found, errors before and after, what was rejected, and the verdict last, where one looks first."""
+    """Print a diagnosis: tables, notes, and then the verdict with its effects.
+
+    Args:
+        saved: The diagnosis as it was written.
+        notes: Notes to print.
+    """
     if (rows := tables.anatomy(saved))[1]:
         table("What the fitted baseline leaves over", *rows, left=4)
     table("Coefficients, fitted before and after", *tables.coefficients(saved))
@@ -90,8 +106,8 @@ def show_diagnosis(saved: DiagnosisFile, notes: list[str]) -> None:
     for note in notes:
         say(f"Note: {note}")
     say(f"\n{words.verdict_sentence(saved)}", "bold")
-    for one in saved.missing.effects:
-        for line in words.effect_in_three_lines(saved, one):
+    for effect in saved.missing.effects:
+        for line in words.effect_in_three_lines(saved, effect):
             say(line)
     say(words.describe_unexplained(saved))
     for force in saved.missing.unexplained.forces:

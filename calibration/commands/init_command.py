@@ -90,8 +90,8 @@ def _sizes(description: Platform) -> dict[str, float]:
     lumped = {key: getattr(description, key) for key in ("linear_damping", "quadratic_damping", "added_mass")}
     return {
         f"{group}.{name}": float(value)
-        for group, some in (description.coefficients | lumped).items()
-        for name, value in some.model_dump().items()
+        for group, coefficients in (description.coefficients | lumped).items()
+        for name, value in coefficients.model_dump().items()
         if isinstance(value, float | int) and value
     }
 

@@ -47,11 +47,26 @@ def quantify(
     seed: int = 0,
     figures: bool = True,
 ) -> bool:
-    """Find, write and print intervals of a calibration's parameters; False where the refit of its records did not converge: the
-    result is marked so.
+    """Find, write and print intervals of a calibration's parameters.
 
-    `profiles` are labels or patterns, `draws` how many resamplings, `level` the probability of an interval. Raises InputError
-    for what does not fit together, before anything takes time where that can be seen.
+    What does not fit together is refused before anything takes time, where that can be seen.
+
+    Args:
+        path: Folder or manifest of the campaign.
+        calibration: The calibration's file or folder.
+        out: Folder of the results.
+        profiles: Labels or patterns of the parameters whose profiles are made.
+        draws: Number of resamplings; None: no bootstrap.
+        nuts: Whether the posterior is sampled.
+        level: Probability of an interval (-).
+        seed: Seed of resamplings and samples.
+        figures: Whether figures are written.
+
+    Returns:
+        False where the refit of the calibration's records did not converge. The result is then marked so.
+
+    Raises:
+        InputError: Arguments or files do not fit together.
     """
     _check(draws, nuts, level)
     campaign = load(path, out)
@@ -61,8 +76,8 @@ def quantify(
     likely, along = _likelihood(campaign, saved, calibration, labels, level)
     bootstraps = {} if draws is None else _run_bootstrap(likely, draws, seed)
     samples = _run_nuts(likely, seed) if nuts else None
-    found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples, nuts)
-    written = write_uncertainty(found, out, figures)
+    uncertainty = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples, nuts)
+    written = write_uncertainty(uncertainty, out, figures)
     table(f"Parameters, {written.percent} intervals by Laplace, with coloured errors", *intervals_table(written))
     if (rows := other_intervals_table(written))[1]:
         table(f"{written.percent} intervals in other ways", *rows)
@@ -89,7 +104,11 @@ def _check(draws: int | None, nuts: bool, level: float) -> None:
 
 
 def read_finished_calibration(campaign: Campaign, path: Path) -> CalibrationFile:
-    """The finished calibration of the campaign's decays in a calibration.json. Raises InputError for what is none."""
+    """Read a finished calibration of the campaign's decays from a calibration.json.
+
+    Raises:
+        InputError: The file has no such calibration.
+    """
     saved = read_saved(path)
     for fault in _faults(saved, campaign):
         raise InputError(str(path), [fault])
@@ -119,38 +138,42 @@ def _faults(saved: CalibrationFile, campaign: Campaign) -> Iterator[Problem]:
         yield Problem("baseline.parameters", "at least one calibrated parameter", "none")
     if not saved.baseline.converged:
         yield Problem("baseline.converged", "true, a finished calibration", "false")
-    for label, one in saved.baseline.parameters.items():
-        if one.start is None:
+    for label, parameter in saved.baseline.parameters.items():
+        if parameter.start is None:
             yield Problem(f"baseline.parameters.{label}.start", "the value that the fit began from", "nothing")
 
 
 def match_labels(profiles: Sequence[str], saved: CalibrationFile) -> list[str]:
-    """The parameters that labels or patterns (`column.*`) name, each once. Raises InputError for what names none."""
-    known = list(saved.values())
-    for one in profiles:
-        if not fnmatch.filter(known, one):
-            expected = f"a calibrated parameter ({', '.join(known)})"
-            raise InputError("--profile", [Problem("", expected, repr(one), suggest(one, known))])
-    return [label for label in known if any(fnmatch.fnmatch(label, one) for one in profiles)]
+    """Parameters that labels or patterns (`column.*`) name, each once.
+
+    Raises:
+        InputError: A label or pattern names no parameter.
+    """
+    labels = list(saved.values())
+    for pattern in profiles:
+        if not fnmatch.filter(labels, pattern):
+            expected = f"a calibrated parameter ({', '.join(labels)})"
+            raise InputError("--profile", [Problem("", expected, repr(pattern), suggest(pattern, labels))])
+    return [label for label in labels if any(fnmatch.fnmatch(label, pattern) for pattern in profiles)]
 
 
 def _likelihood(
     campaign: Campaign, saved: CalibrationFile, path: Path, labels: Sequence[str], level: float
 ) -> tuple[Likelihood, dict[str, Profile]]:
     """The calibration's likelihood, and profiles along parameters."""
-    share, found = REFIT_TIME_SHARE if labels else 1.0, saved.baseline.parameters
+    share, parameters = REFIT_TIME_SHARE if labels else 1.0, saved.baseline.parameters
     with progress() as show:
 
         def report(stage: str, iteration: int, objective: float, fraction: float) -> None:
             show(Progress(f"fitting again: {stage}", iteration, objective, share * fraction))
 
-        began = {label: one.start for label, one in found.items()}
+        began = {label: parameter.start for label, parameter in parameters.items()}
         fit = restored_fit(campaign, began, saved.values(), report)
-        there = np.asarray(fit.unknowns.shared)
+        point = np.asarray(fit.unknowns.shared)
         run_fit(fit)
         show(Progress("information and colour of the errors", 0, float("nan"), share))
         likely = likelihood_of(fit)
-        _check_same_fit(likely, there, saved, path)
+        _check_same_fit(likely, point, saved, path)
         along = {}
         for i, label in enumerate(labels):
             show(Progress(f"profile of {label}", 0, float("nan"), share + (1 - share) * i / len(labels)))
@@ -158,35 +181,35 @@ def _likelihood(
     return likely, along
 
 
-def _check_same_fit(likely: Likelihood, there: np.ndarray, saved: CalibrationFile, path: Path) -> None:
+def _check_same_fit(likely: Likelihood, point: np.ndarray, saved: CalibrationFile, path: Path) -> None:
     """Raise InputError where a fit to the campaign's decays does not end at the file's values."""
     p = len(likely.labels)
-    moved = np.abs(likely.estimate[:p] - there) / likely.deviation()
+    moved = np.abs(likely.estimate[:p] - point) / likely.deviation()
     worst = int(np.argmax(moved))
     if moved[worst] < MAX_REFIT_SHIFT:
         return
     label = likely.labels[worst]
     end, value = likely.value(label, likely.estimate[worst]), saved.values()[label]
     expected = f"{number(end)}, where a fit to this campaign's decays ends"
-    found = f"{number(value)}, {number(float(moved[worst]), 2)} standard deviations away"
+    actual = f"{number(value)}, {number(float(moved[worst]), 2)} standard deviations away"
     hint = "Has the campaign changed since, or were other tests fitted too (--tests all)? Calibrate its decays again."
-    raise InputError(str(path), [Problem(f"baseline.parameters.{label}.value", expected, found, hint)])
+    raise InputError(str(path), [Problem(f"baseline.parameters.{label}.value", expected, actual, hint)])
 
 
 def _run_bootstrap(likely: Likelihood, draws: int, seed: int) -> dict[str, Bootstrap]:
     """Bootstrap over blocks, and over repeats where there are any."""
-    found = {}
+    bootstraps = {}
     with counting(draws, 0, "resamplings") as count:
-        found["blocks"] = bootstrap_blocks(likely, draws, seed, lambda done, _: count(done, "of the residuals in blocks"))
+        bootstraps["blocks"] = bootstrap_blocks(likely, draws, seed, lambda done, _: count(done, "of the residuals in blocks"))
     groups = repeats({record.id: record.test.repeat_of for record in likely.fit.decays.records})
     if any(len(group) > 1 for group in groups.values()):
         with counting(draws, 0, "resamplings") as count:
-            found["repeats"] = bootstrap_repeats(likely, draws, seed, lambda done, _: count(done, "of repeated tests"))
-    return found
+            bootstraps["repeats"] = bootstrap_repeats(likely, draws, seed, lambda done, _: count(done, "of repeated tests"))
+    return bootstraps
 
 
 def _run_nuts(likely: Likelihood, seed: int) -> Samples | None:
-    """NUTS; of a run that the user stops, what there is, if it is enough."""
+    """Samples of NUTS; None where the user stops it before there are enough."""
     with counting(CHAINS * (WARMUP + DRAWS), 0, f"draws of {CHAINS} chains, {WARMUP} of each to find its step") as count:
         try:
             return sample(likely, draws=DRAWS, warmup=WARMUP, chains=CHAINS, seed=seed, progress=count)

@@ -142,7 +142,7 @@ def fingerprint(search: "Search") -> str:
     manifest, folder = campaign.manifest, campaign.folder
     files = [folder / test.file for test in manifest.tests]
     files += [Path(platform_source(manifest, folder)), *map(Path, campaign.platform.files().values())]
-    model = (campaign.platform, campaign.own, setup.declared)
+    model = (campaign.platform, campaign.model_override, setup.declared)
     study = (setup.study.names, setup.study.options, setup.motions, setup.candidates)
     return fingerprints.fingerprint(manifest, campaign.records, files, model, study)
 

@@ -37,12 +37,12 @@ def inference_data(draws: Bootstrap | Samples) -> "InferenceData":
         about = {"method": f"bootstrap over {draws.method}", "seed": draws.seed, "unsettled": draws.unsettled}
     else:
         about = {"method": "NUTS", "seed": draws.seed, "divergences": draws.divergences}
-    found = from_dict(
+    data = from_dict(
         posterior={label: value[..., i] for i, label in enumerate(draws.labels)},
         posterior_attrs={**about, "source": f"jaxhydro {jaxhydro.__version__}"},
     )
     model = draws.likelihood.fit.decays.problem.model
     for label in draws.labels:
-        known = model.about(label)
-        found.posterior[label].attrs |= {"units": known.unit, "long_name": known.meaning}
-    return found
+        description = model.about(label)
+        data.posterior[label].attrs |= {"units": description.unit, "long_name": description.meaning}
+    return data

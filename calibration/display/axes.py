@@ -51,7 +51,7 @@ def selected(every: Mapping[str, Named], names: Collection[str] | None) -> list[
     for name in () if names is None else names:
         if name not in every:
             raise unknown("test", name, every)
-    found = [test for name, test in every.items() if names is None or name in names]
-    if not found:
+    chosen = [test for name, test in every.items() if names is None or name in names]
+    if not chosen:
         raise ValueError("there is no test to plot")
-    return found
+    return chosen

@@ -16,8 +16,16 @@ from jaxhydro.display.data_frames import html
 def parameters_frame(calibration: Calibration) -> pd.DataFrame:
     """Data frame of `Calibration.to_dataframe`."""
     rows = {
-        label: (one.value, _number(one.standard_deviation), one.unit, one.start, one.identifiable, one.at_bound, one.meaning)
-        for label, one in calibration.parameters.items()
+        label: (
+            parameter.value,
+            _number(parameter.standard_deviation),
+            parameter.unit,
+            parameter.start,
+            parameter.identifiable,
+            parameter.at_bound,
+            parameter.meaning,
+        )
+        for label, parameter in calibration.parameters.items()
     }
     columns = ["value", "standard_deviation", "unit", "start", "identifiable", "at_bound", "meaning"]
     return _frame(rows, columns, "parameter")
@@ -29,11 +37,11 @@ def effects_frame(diagnosis: Diagnosis) -> pd.DataFrame:
     for effect in diagnosis.effects:
         evidence = effect.evidence
         about = (evidence.probability, evidence.delta_bic, evidence.holdout_gain, effect.share, effect.in_doubt is not None)
-        for label, one in effect.parameters.items():
+        for label, parameter in effect.parameters.items():
             size = effect.plausible.get(label)
             plausible = (np.nan, np.nan) if size is None else (size.lower, size.upper)
-            found = (one.value, _number(one.standard_deviation), one.unit)
-            rows[label] = (effect.effect, effect.degree_of_freedom, *found, *plausible, *about)
+            estimate = (parameter.value, _number(parameter.standard_deviation), parameter.unit)
+            rows[label] = (effect.effect, effect.degree_of_freedom, *estimate, *plausible, *about)
     columns = ["effect", "motion", "value", "standard_deviation", "unit", "lower", "upper"]
     columns += ["probability", "delta_bic", "holdout_gain", "explained", "in_doubt"]
     return _frame(rows, columns, "parameter")

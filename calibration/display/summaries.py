@@ -26,20 +26,20 @@ def calibration_summary(calibration: Calibration) -> str:
         calibration: The calibration.
     """
     platform = f" of {calibration.platform}" if calibration.platform else ""
-    said = [f"Calibration{platform} to campaign {calibration.campaign}"]
-    said.append(verdict_of_calibration(calibration))
+    head = [f"Calibration{platform} to campaign {calibration.campaign}"]
+    head.append(verdict_of_calibration(calibration))
     rows = [
-        (label, value_text(write_calibration.parameter(one)), readable_unit(one.unit))
-        for label, one in calibration.parameters.items()
-        if math.isfinite(one.value)
+        (label, value_text(write_calibration.parameter(parameter)), readable_unit(parameter.unit))
+        for label, parameter in calibration.parameters.items()
+        if math.isfinite(parameter.value)
     ]
     width = max((len(label) for label, *_ in rows), default=0)
     lines = [f"  {label:<{width}}  {value} {unit}".rstrip() for label, value, unit in rows]
-    return "\n".join([*said, *_limited(lines, "parameters")])
+    return "\n".join([*head, *_limited(lines, "parameters")])
 
 
 def verdict_of_calibration(calibration: Calibration) -> str:
-    """What the calibration came to, in a sentence."""
+    """Result of a calibration in one sentence."""
     try:
         return calibration_sentence(summary_of(write_calibration.document(calibration, damping=False)))
     except NotFinite as error:
@@ -47,24 +47,24 @@ def verdict_of_calibration(calibration: Calibration) -> str:
 
 
 def diagnosis_summary(diagnosis: Diagnosis) -> str:
-    """The verdict in a sentence, the effects with their sizes, and what is left.
+    """The verdict in a sentence, the effects with their sizes, and the unexplained rest.
 
     Args:
         diagnosis: The diagnosis.
     """
-    said = [f"Diagnosis of campaign {diagnosis.campaign}"]
+    head = [f"Diagnosis of campaign {diagnosis.campaign}"]
     try:
         saved = write_diagnosis.document(diagnosis, damping=False)
     except NotFinite as error:
-        return "\n".join([*said, f"{capitalised(str(error))}."])
-    said.append(verdict_sentence(saved))
+        return "\n".join([*head, f"{capitalised(str(error))}."])
+    head.append(verdict_sentence(saved))
     lines = [
-        f"  {capitalised(effect_in_words(one.effect, one.degree_of_freedom))}: "
-        f"{listed([describe_parameter(name, value) for name, value in one.parameters.items()])}"
-        f" (probability {describe_probability(one.evidence.probability)})"
-        for one in saved.missing.effects
+        f"  {capitalised(effect_in_words(effect.effect, effect.degree_of_freedom))}: "
+        f"{listed([describe_parameter(name, value) for name, value in effect.parameters.items()])}"
+        f" (probability {describe_probability(effect.evidence.probability)})"
+        for effect in saved.missing.effects
     ]
-    return "\n".join([*said, *_limited(lines, "effects"), describe_unexplained(saved)])
+    return "\n".join([*head, *_limited(lines, "effects"), describe_unexplained(saved)])
 
 
 def campaign_summary(campaign: Campaign) -> str:
@@ -75,7 +75,7 @@ def campaign_summary(campaign: Campaign) -> str:
     """
     manifest, scale = campaign.manifest, campaign.manifest.scale
     scaled = "" if scale == 1 else f", times {scale:g} by Froude"
-    said = [f"Campaign {manifest.name}: {counted(len(campaign.records), 'test')} of {campaign.platform.name}{scaled}"]
+    head = [f"Campaign {manifest.name}: {counted(len(campaign.records), 'test')} of {campaign.platform.name}{scaled}"]
     lines = []
     for kind in dict.fromkeys(record.kind for record in campaign.records):
         for use in USE:
@@ -87,7 +87,7 @@ def campaign_summary(campaign: Campaign) -> str:
                 lines.append(f"  {KINDS.get(kind, kind)}: {len(mine)} {USE[use]}{motions}, {number(hours, 2)} h")
     warnings = len(group_findings(campaign.findings))
     lines += [f"  {counted(warnings, 'warning')} about the records (`findings`)"] if warnings else []
-    return "\n".join([*said, *lines])
+    return "\n".join([*head, *lines])
 
 
 def _limited(lines: list[str], noun: str) -> list[str]:

@@ -50,15 +50,15 @@ def guess_columns(table: pd.DataFrame) -> dict[str, ColumnGuess]:
     names = [str(name) for name in table.columns]
     candidates: dict[str, list[tuple[int, int]]] = {}  # channel -> ranks and numbers of columns
     for number, name in enumerate(names):
-        found = channel_of(name) if table.iloc[:, number].dtype.kind == "f" else None
-        if found is not None and _may_be(found[0], name, table):
-            candidates.setdefault(found[0], []).append((-found[1], number))
+        match = channel_of(name) if table.iloc[:, number].dtype.kind == "f" else None
+        if match is not None and _may_be(match[0], name, table):
+            candidates.setdefault(match[0], []).append((-match[1], number))
     guesses: dict[str, ColumnGuess] = {}
     for channel in (*CHANNELS, WAVE):
         ordered = sorted(candidates.get(channel, []))
         by: Literal["name", "rising values"] = "name"
         if not ordered and channel == "time":
-            taken = {number for some in candidates.values() for _, number in some}
+            taken = {number for ranked in candidates.values() for _, number in ranked}
             ordered, by = [(0, number) for number in _rising(table, taken)][:1], "rising values"
         if ordered:
             number = ordered[0][1]
@@ -67,7 +67,7 @@ def guess_columns(table: pd.DataFrame) -> dict[str, ColumnGuess]:
             if names[number] in table.attrs.get("times", ()):
                 unit = stated = "s"  # written as times of day, read as seconds
             column = names[number] if names.count(names[number]) == 1 and names[number] else number
-            others = tuple(names[other] for _, other in ordered[1:])
+            others = tuple(names[index] for _, index in ordered[1:])
             guesses[channel] = ColumnGuess(column, unit, by, "file" if stated else "default", others)
     return guesses
 
@@ -80,7 +80,10 @@ def values_of(table: pd.DataFrame, guess: ColumnGuess) -> np.ndarray:
 
 
 def left_out(table: pd.DataFrame, guesses: Mapping[str, ColumnGuess]) -> set[str]:
-    """Return motions that no model follows, since their angles are beyond 90 degrees: a heading that was not zeroed."""
+    """Return motions with angles beyond 90 degrees, which no model follows.
+
+    Such a motion is a heading that was not zeroed.
+    """
     angles = {channel: values_of(table, guess) for channel, guess in guesses.items() if channel in DOFS[3:]}
     return {channel for channel, values in angles.items() if np.abs(values[valid_values(values)]).max(initial=0.0) > MAX_ANGLE}
 
@@ -107,7 +110,7 @@ def ranges_without_unit(table: pd.DataFrame, guesses: Mapping[str, ColumnGuess])
 
 
 def _may_be(channel: str, name: str, table: pd.DataFrame) -> bool:
-    """Whether what the file states of a column's unit leaves the channel possible."""
+    """Whether the unit that the file states for a column leaves the channel possible."""
     stated = table.attrs.get("stated", {}).get(name)
     if stated is not None:
         return stated in SI[quantity(channel)]

@@ -50,13 +50,13 @@ def draft_of_files(
     columns = [guess_columns(table) for table in tables]
     _check_columns(files, tables, columns)
     ranges: dict[str, float] = {}
-    for table, own in zip(tables, columns):
-        for column, size in ranges_without_unit(table, own).items():
+    for table, guesses in zip(tables, columns):
+        for column, size in ranges_without_unit(table, guesses).items():
             ranges[column] = max(size, ranges.get(column, 0.0))
     length /= scale or 1.0
     drafts = None
     if are_radians(ranges):
-        drafts = _drafts(files, tables, [_in_radians(own) for own in columns], length)
+        drafts = _drafts(files, tables, [_in_radians(guesses) for guesses in columns], length)
         if not any(_angle_of_size(test) for test in drafts):
             drafts = None  # no angle was released: small ones may as well be degrees
     drafts = drafts or _drafts(files, tables, columns, length)
@@ -73,16 +73,16 @@ def _drafts(
 ) -> list[TestDraft]:
     """Tests with their kinds, before they are compared with each other."""
     tests: list[TestDraft] = []
-    for file, table, found in zip(files, tables, columns):
-        out = left_out(table, found)
-        own = {channel: guess for channel, guess in found.items() if channel not in out}
-        values = {channel: values_of(table, guess) for channel, guess in own.items()}
+    for file, table, guesses in zip(files, tables, columns):
+        out = left_out(table, guesses)
+        used = {channel: guess for channel, guess in guesses.items() if channel not in out}
+        values = {channel: values_of(table, guess) for channel, guess in used.items()}
         motions = {dof: values[dof] for dof in DOFS if dof in values}
         guess = guess_kind(values["time"], motions, values.get(WAVE), length, motion_in(file.stem))
         id = _id(file.stem, [test.id for test in tests])
-        out_of_range = {name: found[name] for name in out}
-        still = still_time(values["time"] / SI["time"][own["time"].unit], motions, guess.degree_of_freedom)
-        tests.append(TestDraft(id, file.name, guess, "fit", own, left_out=out_of_range, still=still))
+        out_of_range = {name: guesses[name] for name in out}
+        still = still_time(values["time"] / SI["time"][used["time"].unit], motions, guess.degree_of_freedom)
+        tests.append(TestDraft(id, file.name, guess, "fit", used, left_out=out_of_range, still=still))
     return tests
 
 
@@ -96,8 +96,8 @@ def _read(files: Sequence[Path]) -> list[pd.DataFrame]:
     names = Counter(file.name.lower() for file in files)
     twice = [file for file in files if names[file.name.lower()] > 1]
     if twice:
-        found = ", ".join(map(str, twice))
-        raise InputError("data files", [Problem("", "files of different names, since all go into one folder", found)])
+        actual = ", ".join(map(str, twice))
+        raise InputError("data files", [Problem("", "files of different names, since all go into one folder", actual)])
     tables: list[pd.DataFrame] = []
     errors: list[InputError] = []
     for file in files:
@@ -118,12 +118,12 @@ def _with_numbers(file: Path, table: pd.DataFrame) -> pd.DataFrame:
     names = [str(name) for name in table.columns]
     unnamed = names == [str(i) for i in range(len(names))]
     mistakes = {
-        number: some
-        for number, some in table.attrs.get("not_numbers", {}).items()
+        number: faults
+        for number, faults in table.attrs.get("not_numbers", {}).items()
         if unnamed or channel_of(names[number]) is not None
     }
     if mistakes:
-        raise InputError(str(file), [replace(one, hint=_EMPTY_CELL) for some in mistakes.values() for one in some])
+        raise InputError(str(file), [replace(fault, hint=_EMPTY_CELL) for faults in mistakes.values() for fault in faults])
     return table
 
 
@@ -131,18 +131,18 @@ def _check_columns(files: Sequence[Path], tables: Sequence[pd.DataFrame], guesse
     problems: list[Problem] = []
     for file, table, columns in zip(files, tables, guesses):
         names = list(map(str, table.columns))
-        found = ", ".join(names[:12])
+        actual = ", ".join(names[:12])
         if names == [str(i) for i in range(len(names))]:
-            found = f"{len(names)} columns without names"
+            actual = f"{len(names)} columns without names"
         if "time" not in columns:
-            problems.append(Problem(str(file), "a time column, such as time_s", found))
+            problems.append(Problem(str(file), "a time column, such as time_s", actual))
         if not set(columns) & set(DOFS):
             expected = f"a column of a motion ({', '.join(DOFS)}), such as surge_m, PtfmPitch_deg or phi"
             problems.append(
                 Problem(
                     str(file),
                     expected,
-                    found,
+                    actual,
                     "Name the columns in the first row of the file, or number them from 0 in campaign.yaml.",
                 )
             )
@@ -173,17 +173,20 @@ def _overrides(shared: Columns, test: TestDraft) -> dict[str, ColumnGuess | None
     """Columns of one file that are not the shared ones; None for a channel that is not to be read."""
     overrides: dict[str, ColumnGuess | None] = {}
     for channel, usual in shared.items():
-        own = test.columns.get(channel)
+        guess = test.columns.get(channel)
         if channel == WAVE and test.guess.kind not in IN_WAVES:
-            if own is not None:
+            if guess is not None:
                 overrides[WAVE] = None  # still water
-        elif own is None or (own.column, own.unit) != (usual.column, usual.unit):
-            overrides[channel] = own
+        elif guess is None or (guess.column, guess.unit) != (usual.column, usual.unit):
+            overrides[channel] = guess
     return overrides
 
 
 def _with_uses(tests: Sequence[TestDraft]) -> tuple[TestDraft, ...]:
-    """The last of several tests of a kind and motion is held out; what is neither a decay nor in waves is ignored."""
+    """Set the use of each test.
+
+    The last of several tests of a kind and motion is held out. A test that is neither a decay nor in waves is ignored.
+    """
     groups = [(test.guess.kind, test.guess.degree_of_freedom) for test in tests]
     counts = Counter(groups)
     used: list[TestDraft] = []
@@ -198,6 +201,6 @@ def _id(stem: str, taken: Sequence[str]) -> str:
     """An id that a manifest takes, from the name of a file."""
     clean = re.sub(r"[^\w .,()+=@-]", "_", stem)[:90].strip(" .-,()@") or "test"
     id, number = clean, 2
-    while id.lower() in (other.lower() for other in taken):
+    while id.lower() in (name.lower() for name in taken):
         id, number = f"{clean}-{number}", number + 1
     return id

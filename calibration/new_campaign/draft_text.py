@@ -108,9 +108,9 @@ def _channel(name: str, guess: ColumnGuess) -> str:
 def _reason(guess: ColumnGuess, draft: CampaignDraft) -> str:
     if not draft.from_files:
         return "CHECK: column and unit"
-    found = "by its name" if guess.by == "name" else "the first column that rises"
+    reason = "by its name" if guess.by == "name" else "the first column that rises"
     also = f"; or {', '.join(guess.others[:3])}" if guess.others else ""
-    return f"CHECK: {found}{also}; {unit_source(guess)}"
+    return f"CHECK: {reason}{also}; {unit_source(guess)}"
 
 
 def _wave_channel(draft: CampaignDraft) -> str:
@@ -160,5 +160,5 @@ def _test_line(test: TestDraft) -> tuple[str, str]:
 
 def _overrides(test: TestDraft) -> Iterator[str]:
     """Columns of one test's own file, with their units."""
-    for name, own in test.overrides.items():
-        yield f"{name}: null" if own is None else f"{name}: {{column: {yaml_scalar(own.column)}, unit: {own.unit}}}"
+    for name, guess in test.overrides.items():
+        yield f"{name}: null" if guess is None else f"{name}: {{column: {yaml_scalar(guess.column)}, unit: {guess.unit}}}"

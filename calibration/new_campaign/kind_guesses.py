@@ -1,4 +1,4 @@
-"""Guesses what a recorded test is: a decay and of which motion, regular or irregular waves, or none of these."""
+"""Guesses of the kind of a recorded test: decay of a motion, regular or irregular waves, or none."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ def guess_kind(
     released, dying = _released(time, motions, length)
     dies_out = released in dying
     if wave is not None:
-        known = valid_values(wave[rows])
-        wave = np.where(known, wave[rows], float(np.mean(wave[rows][known])) if known.any() else 0.0)
+        valid = valid_values(wave[rows])
+        wave = np.where(valid, wave[rows], float(np.mean(wave[rows][valid])) if valid.any() else 0.0)
         if not _is_still(time, wave, motions, dies_out):
             middle = wave[len(wave) // 4 : 3 * len(wave) // 4]
             regular = float(stats.kurtosis(middle, fisher=False)) < MAX_REGULAR_KURTOSIS
@@ -104,7 +104,7 @@ def _released(time: np.ndarray, motions: Mapping[str, np.ndarray], length: float
 
 
 def _is_still(time: np.ndarray, wave: np.ndarray, motions: Mapping[str, np.ndarray], dies_out: bool) -> bool:
-    """Whether no waves come in: none at all, noise, or what a decaying platform sends out itself."""
+    """Whether no waves come in: none at all, noise, or waves that a decaying platform sends out itself."""
     size = float(np.std(wave))
     largest = max((float(np.std(values)) for name, values in motions.items() if quantity(name) == "length"), default=0.0)
     if size <= max(STILL_WAVE_NOISE * noise_level(time, wave), STILL_WAVE_SHARE * largest * dies_out):

@@ -45,10 +45,10 @@ def still_time(time: np.ndarray, motions: Mapping[str, np.ndarray], released: st
 def common_still_time(tests: Sequence[TestDraft]) -> tuple[float, float] | None:
     """The time in which the platform rests in every file, to three digits; None where there is none."""
     times = [test.still for test in tests]
-    known = [one for one in times if one is not None]
-    if not known or len(known) < len(times):
+    intervals = [interval for interval in times if interval is not None]
+    if not intervals or len(intervals) < len(times):
         return None
-    begin, end = max(one[0] for one in known), min(one[1] for one in known)
+    begin, end = max(interval[0] for interval in intervals), min(interval[1] for interval in intervals)
     if not end > begin:
         return None
     digit = 10.0 ** np.floor(np.log10(end - begin) - 2)

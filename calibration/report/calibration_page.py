@@ -26,7 +26,7 @@ def page(saved: CalibrationFile, folder: Path) -> str:
         summary=summary,
         sentence=calibration_sentence(summary),
         in_waves=any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values()),
-        undetermined=[i for i, one in enumerate(saved.baseline.parameters.values()) if not one.identifiable],
+        undetermined=[i for i, parameter in enumerate(saved.baseline.parameters.values()) if not parameter.identifiable],
         images=images(saved.figures, folder).values(),
         motion=motion_view(folder),
         notes=notes_by_kind(saved.baseline.notes, saved.baseline.notes_about),

@@ -1,4 +1,4 @@
-"""Tables and verdict of `jaxhydro check`: what a campaign's records hold, and whether the model fits them."""
+"""Tables and verdict of `jaxhydro check`: content of the records, and whether the model fits them."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -31,18 +31,18 @@ class PeriodComparison(NamedTuple):
         motion: The motion.
         tests: Number of decays with a clear period.
         measured: Their median period (s).
-        declared: Period of the model (s).
+        model: Period of the model (s).
     """
 
     motion: str
     tests: int
     measured: float
-    declared: float
+    model: float
 
     @property
     def difference(self) -> float:
-        """Declared less measured period, over the measured one."""
-        return self.declared / self.measured - 1
+        """Model less measured period, over the measured one."""
+        return self.model / self.measured - 1
 
 
 def compare_periods(records: Sequence[Record], modes: Modes) -> list[PeriodComparison]:
@@ -52,13 +52,15 @@ def compare_periods(records: Sequence[Record], modes: Modes) -> list[PeriodCompa
         records: The records.
         modes: Natural modes of the model.
     """
-    found: dict[str, list[float]] = {}
+    measured: dict[str, list[float]] = {}
     for record in records:
         if record.kind == "decay" and record.use != "ignore" and record.degree_of_freedom is not None:
             period = dominant_period(record.time, record.values[record.degree_of_freedom])
             if period is not None:
-                found.setdefault(record.degree_of_freedom, []).append(period)
-    return [PeriodComparison(motion, len(some), float(np.median(some)), modes.of(motion)) for motion, some in found.items()]
+                measured.setdefault(record.degree_of_freedom, []).append(period)
+    return [
+        PeriodComparison(motion, len(values), float(np.median(values)), modes.of(motion)) for motion, values in measured.items()
+    ]
 
 
 def tests(campaign: Campaign) -> Rows:
@@ -86,31 +88,37 @@ def _content(record: Record, step: float) -> str:
 
 
 def periods(compared: Sequence[PeriodComparison]) -> Rows:
-    """Natural periods, measured and declared."""
+    """Natural periods, measured and of the model."""
     rows = [
-        (one.motion, str(one.tests), number(one.measured, 3), number(one.declared, 3), signed_percent(one.difference))
-        for one in compared
+        (
+            comparison.motion,
+            str(comparison.tests),
+            number(comparison.measured, 3),
+            number(comparison.model, 3),
+            signed_percent(comparison.difference),
+        )
+        for comparison in compared
     ]
     return ("Motion", "Decays", "Measured (s)", "Model (s)", "Difference"), rows
 
 
 def doubts(campaign: Campaign, compared: Sequence[PeriodComparison]) -> Iterator[str]:
     """What to look at before a fit, in sentences."""
-    own = campaign.folder / campaign.manifest.platform
-    for name in builtin_platforms() if own.is_file() else ():
-        if own.read_text(encoding="utf-8") == builtin_text(name):
+    platform_file = campaign.folder / campaign.manifest.platform
+    for name in builtin_platforms() if platform_file.is_file() else ():
+        if platform_file.read_text(encoding="utf-8") == builtin_text(name):
             yield f"{campaign.manifest.platform} is still the built-in {name}: put your platform in"
     warnings = len(group_findings(campaign.findings))
     if warnings:
         yield f"{counted(warnings, 'warning')} above"
     yield from _at_rest(campaign)
-    for one in compared:
-        if math.isnan(one.declared):
-            yield f"{one.motion}: the model has no natural period in it, measured {number(one.measured, 3)} s"
-        elif abs(one.difference) > MAX_PERIOD_DIFFERENCE:
+    for comparison in compared:
+        if math.isnan(comparison.model):
+            yield f"{comparison.motion}: the model has no natural period in it, measured {number(comparison.measured, 3)} s"
+        elif abs(comparison.difference) > MAX_PERIOD_DIFFERENCE:
             yield (
-                f"{one.motion}: the model's natural period is {number(one.declared, 3)} s, measured "
-                f"{number(one.measured, 3)} s (mass, mooring, unit or `scale`)"
+                f"{comparison.motion}: the model's natural period is {number(comparison.model, 3)} s, measured "
+                f"{number(comparison.measured, 3)} s (mass, mooring, unit or `scale`)"
             )
 
 
@@ -130,7 +138,7 @@ def _at_rest(campaign: Campaign) -> Iterator[str]:
             yield f"the declared platform rests at {number(angle, 2)} deg of {name} (centre of mass, mooring)"
 
 
-def verdict(campaign: Campaign, said: Sequence[str]) -> str:
+def verdict(campaign: Campaign, sentences: Sequence[str]) -> str:
     """The answer in one sentence, with the `doubts` that there are."""
     read = f"{counted(len(campaign.records), 'test')} read"
-    return f"{read}. Look at this first: {'; '.join(said)}." if said else f"{read}: nothing looks wrong."
+    return f"{read}. Look at this first: {'; '.join(sentences)}." if sentences else f"{read}: nothing looks wrong."

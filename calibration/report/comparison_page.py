@@ -17,26 +17,28 @@ def agreements(saved: ComparisonFile) -> list[Agreement]:
     groups: dict[tuple[str, str], list[str]] = {}
     for id, test in saved.tests.items():
         groups.setdefault((saved.error[id].use, test.kind), []).append(id)
-    found = []
+    group_agreements = []
     for (use, kind), ids in sorted(groups.items()):
         errors: list[float] = []
         bands: dict[str, list[float]] = {}
         for id in ids:
-            moving = [name for name, one in saved.tests[id].statistics.items() if one.moving]
-            errors += [one.relative for name, one in saved.error[id].channels.items() if name in moving]
+            moving = [name for name, statistics in saved.tests[id].statistics.items() if statistics.moving]
+            errors += [channel.relative for name, channel in saved.error[id].channels.items() if name in moving]
             for name, row in saved.error[id].bands.items():
                 for band, error in row.items() if name in moving else ():
                     bands.setdefault(band, []).append(abs(error))
-        found.append(Agreement(kind, use, len(ids), tuple(errors), {band: tuple(values) for band, values in bands.items()}))
-    return found
+        group_agreements.append(
+            Agreement(kind, use, len(ids), tuple(errors), {band: tuple(values) for band, values in bands.items()})
+        )
+    return group_agreements
 
 
-def comparison_sentence(found: list[Agreement]) -> str:
+def comparison_sentence(group_agreements: list[Agreement]) -> str:
     """How the tests are followed.
 
     "4 tests in irregular waves: low-frequency energy off by 2-14 % and wave-frequency energy off by 3-9 %."
     """
-    return " ".join(f"{agreement_phrase(one)}." for one in found) or "No test in waves was simulated."
+    return " ".join(f"{agreement_phrase(agreement)}." for agreement in group_agreements) or "No test in waves was simulated."
 
 
 def page(saved: ComparisonFile, folder: Path) -> str:
@@ -66,13 +68,13 @@ def page(saved: ComparisonFile, folder: Path) -> str:
 
 
 def _coefficients(saved: ComparisonFile) -> Rows:
-    """Calibrated values that were used, and what is to be known of them."""
+    """Calibrated values that were used, and whether its records determine them."""
     used = saved.coefficients
     rows: list[tuple[str, ...]] = [(label, number(value)) for label, value in used.values.items()]
     if not used.not_identifiable:
         return ("Parameter", "Value (SI)"), rows
-    said = ("not determined by its records" if label in used.not_identifiable else "" for label in used.values)
-    return ("Parameter", "Value (SI)", "Remark"), [(*row, remark) for row, remark in zip(rows, said, strict=True)]
+    remarks = ("not determined by its records" if label in used.not_identifiable else "" for label in used.values)
+    return ("Parameter", "Value (SI)", "Remark"), [(*row, remark) for row, remark in zip(rows, remarks, strict=True)]
 
 
 def _waves(saved: ComparisonFile) -> str:

@@ -11,7 +11,7 @@ from calibration.results.diagnosis_file import DiagnosisFile
 from calibration.results.result_folder import DIAGNOSIS_FILE
 from calibration.vocabulary import KINDS, USE
 
-FIGURE_PLACES = {  # starts of figures' names, by place; at the end what remains
+FIGURE_SECTIONS = {  # starts of figures' names, by section of the page; the last takes all others
     "anatomy": ("anatomy",),
     "latent": ("latent-force",),
     "effects": ("effect-",),
@@ -42,20 +42,24 @@ def page(saved: DiagnosisFile, folder: Path) -> str:
 
 
 def _placed(saved: DiagnosisFile, folder: Path) -> dict[str, list[Image]]:
-    """Figures by their place on the page, each once."""
-    found: dict[str, list[Image]] = {place: [] for place in FIGURE_PLACES}
-    places = {place: starts for place, starts in FIGURE_PLACES.items() if place != "latent" or saved.missing.unexplained.forces}
+    """Figures by section of the page, each once."""
+    figures: dict[str, list[Image]] = {section: [] for section in FIGURE_SECTIONS}
+    sections = {
+        section: starts
+        for section, starts in FIGURE_SECTIONS.items()
+        if section != "latent" or saved.missing.unexplained.forces
+    }
     for name, image in images(saved.figures, folder).items():
-        found[next(place for place, starts in places.items() if name.startswith(starts))].append(image)
-    return found
+        figures[next(section for section, starts in sections.items() if name.startswith(starts))].append(image)
+    return figures
 
 
 def _measured(saved: DiagnosisFile) -> str:
     """How many tests of which kind, and how long together."""
-    each = Counter((KINDS.get(one.kind, one.kind), one.use) for one in saved.tests.values())
+    each = Counter((KINDS.get(test.kind, test.kind), test.use) for test in saved.tests.values())
     kinds = {kind: [f"{n} {USE.get(use, use)}" for (other, use), n in each.items() if other == kind] for kind, _ in each}
-    seconds = sum(one.duration or 0.0 for one in saved.tests.values())
+    seconds = sum(test.duration or 0.0 for test in saved.tests.values())
     span, unit = next((s, u) for s, u in ((3600, "hours"), (60, "minutes"), (1, "s")) if seconds >= 2 * s or s == 1)
-    said = "; ".join(f"{kind}: {', '.join(counts)}" for kind, counts in kinds.items())
+    listing = "; ".join(f"{kind}: {', '.join(counts)}" for kind, counts in kinds.items())
     tests = counted(len(saved.tests), "test") + (f" of {saved.platform}" if saved.platform else "")
-    return f"{tests}, {number(seconds / span, 2)} {unit} together at the platform file's scale ({said})."
+    return f"{tests}, {number(seconds / span, 2)} {unit} together at the platform file's scale ({listing})."

@@ -26,36 +26,39 @@ VARIED = (
 
 
 def tests(saved: DiagnosisFile) -> Rows:
-    """What was measured."""
+    """Kind, file, use and length of every test."""
     rows = []
-    for id, one in saved.tests.items():
-        kind = " in ".join(filter(None, (KINDS.get(one.kind, one.kind), one.degree_of_freedom)))
-        length = f"{number(one.duration, 3)} s" if one.duration is not None else ""
-        rows.append((id, kind, one.file, USE.get(one.use, one.use), length))
+    for id, test in saved.tests.items():
+        kind = " in ".join(filter(None, (KINDS.get(test.kind, test.kind), test.degree_of_freedom)))
+        length = f"{number(test.duration, 3)} s" if test.duration is not None else ""
+        rows.append((id, kind, test.file, USE.get(test.use, test.use), length))
     return ("Test", "Kind", "File", "Use", "Length"), rows
 
 
 def effects(saved: DiagnosisFile) -> Rows:
-    """What was found: a row for every parameter."""
+    """Effects that were found: a row for every parameter."""
     rows = []
-    for one in saved.missing.effects:
+    for effect in saved.missing.effects:
         first = (
-            effect_in_words(one.effect, one.degree_of_freedom),
-            describe_probability(one.evidence.probability),
-            percent(one.evidence.holdout_gain),
+            effect_in_words(effect.effect, effect.degree_of_freedom),
+            describe_probability(effect.evidence.probability),
+            percent(effect.evidence.holdout_gain),
         )
-        for i, (name, value) in enumerate(sorted_by_certainty(one.parameters)):
-            said = quantity(value.value, value.standard_deviation, value.unit)
-            said = said if is_determined(value) else f"({quantity(value.value, None, value.unit)}) {UNDETERMINED}"
-            size = (plain_name(name), said, describe_range(one, name))
+        for i, (name, value) in enumerate(sorted_by_certainty(effect.parameters)):
+            text = quantity(value.value, value.standard_deviation, value.unit)
+            text = text if is_determined(value) else f"({quantity(value.value, None, value.unit)}) {UNDETERMINED}"
+            size = (plain_name(name), text, describe_range(effect, name))
             rows.append((first[0], *size, *first[1:]) if i == 0 else ("", *size, "", ""))
     gain = f"Gain over {validation_tests(saved)}"
     return ("Effect", "Parameter", "Value ± 1 sd", "Plausible range", "Probability", gain), rows
 
 
 def errors(saved: DiagnosisFile) -> Rows:
-    """RMSE over the motion's standard deviation, before and after, of what counts in J; fitted tests first."""
-    before = {id: one.channels for id, one in saved.baseline.error.items()}
+    """RMSE over the motion's standard deviation, before and after; fitted tests first.
+
+    Only motions that count in the objective are listed.
+    """
+    before = {id: test_error.channels for id, test_error in saved.baseline.error.items()}
     rows = []
     for id in sorted(saved.augmented.error, key=lambda id: _order(saved, id)):
         use = _use(saved, id)
@@ -84,9 +87,9 @@ def bands(saved: DiagnosisFile) -> Rows:
 def predictions(saved: DiagnosisFile) -> Rows:
     """Bands of the predicted motions of held-out tests, and how many samples they hold."""
     rows = []
-    for one in saved.predictions:
-        errors = (number(value, 2) for value in (one.half_width, one.parameter_error, one.model_error))
-        rows.append((one.test, one.channel, one.unit, *errors, percent(one.inside)))
+    for prediction in saved.predictions:
+        errors = (number(value, 2) for value in (prediction.half_width, prediction.parameter_error, prediction.model_error))
+        rows.append((prediction.test, prediction.channel, prediction.unit, *errors, percent(prediction.inside)))
     return ("Test", "Motion", "Unit", "Half-width", "Parameters", "Model and noise", "Samples inside"), rows
 
 
@@ -94,15 +97,18 @@ def coefficients(saved: DiagnosisFile) -> Rows:
     """Every fitted parameter as declared, before and after, the effects' own among those after."""
     rows = []
     for label, was, now in _parameters(saved, nearly_known=False):
-        known = was is not None and now is not None and is_determined(was) and is_determined(now) and was.value != 0
-        moved = _moved(now.value / was.value - 1) if known and was and now else ""
+        comparable = was is not None and now is not None and is_determined(was) and is_determined(now) and was.value != 0
+        moved = _moved(now.value / was.value - 1) if comparable and was and now else ""
         rows.append((*_of_parameter(label, was, now), moved))
     return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", "Moved by"), rows
 
 
 def nearly_known(saved: DiagnosisFile) -> Rows:
-    """The same of those that are let vary though nobody declared them."""
-    rows = [_of_parameter(*one) for one in _parameters(saved, nearly_known=True)]
+    """Fitted properties that are nearly known, before and after.
+
+    A search lets them vary though nobody declared them.
+    """
+    rows = [_of_parameter(*row) for row in _parameters(saved, nearly_known=True)]
     return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit"), rows
 
 
@@ -111,7 +117,7 @@ def _moved(ratio: float) -> str:
 
 
 def _parameters(saved: DiagnosisFile, nearly_known: bool) -> list[tuple[str, Parameter | None, Parameter | None]]:
-    """Labels, and what is fitted of them before and after."""
+    """Labels with their fitted parameters before and after."""
     before, after = saved.baseline.parameters, saved.augmented.parameters
     labels = [label for label in dict.fromkeys([*before, *after]) if label.startswith(NEARLY_KNOWN) == nearly_known]
     rows = [(label, before.get(label), after.get(label)) for label in labels]
@@ -119,46 +125,46 @@ def _parameters(saved: DiagnosisFile, nearly_known: bool) -> list[tuple[str, Par
 
 
 def _of_parameter(label: str, was: Parameter | None, now: Parameter | None) -> tuple[str, ...]:
-    unit = next((one.unit for one in (now, was) if one is not None), "")
+    unit = next((parameter.unit for parameter in (now, was) if parameter is not None), "")
     return label, number(was.start if was is not None else None, 3), _value(was), _value(now), readable_unit(unit)
 
 
 def rejected(saved: DiagnosisFile) -> Rows:
-    """What was tried and is not in the model, together where it is for the same reason."""
+    """Effects that were tried and are not in the model; those with the same reason share a row."""
     reasons: dict[str, list[str]] = {}
-    for one in saved.missing.rejected:
-        reasons.setdefault(one.reason, []).append(effect_in_words(one.effect, one.degree_of_freedom))
+    for rejection in saved.missing.rejected:
+        reasons.setdefault(rejection.reason, []).append(effect_in_words(rejection.effect, rejection.degree_of_freedom))
     rows = [("; ".join(names), reason) for reason, names in reasons.items()]
     return ("Effect", "Why not"), rows
 
 
 def anatomy(saved: DiagnosisFile) -> Rows:
     """The residual before, motion by motion, the largest first, and what became of it."""
-    after = {(one.test, one.channel): one for one in saved.anatomy.after}
+    after = {(residual.test, residual.channel): residual for residual in saved.anatomy.after}
     rows = []
-    for one in sorted(saved.anatomy.before, key=lambda one: -(one.over_noise or 0.0)):
-        now = after.get((one.test, one.channel))
+    for residual in sorted(saved.anatomy.before, key=lambda residual: -(residual.over_noise or 0.0)):
+        now = after.get((residual.test, residual.channel))
         rows.append(
             (
-                one.test,
-                USE.get(one.use, one.use),
-                one.channel,
-                one.words,
-                f"{number(one.rms, 2)} {one.unit}",
-                percent(one.relative if (one.relative or 0.0) < MAX_RELATIVE_ERROR else None),
-                number(one.over_noise, 2),
+                residual.test,
+                USE.get(residual.use, residual.use),
+                residual.channel,
+                residual.words,
+                f"{number(residual.rms, 2)} {residual.unit}",
+                percent(residual.relative if (residual.relative or 0.0) < MAX_RELATIVE_ERROR else None),
+                number(residual.over_noise, 2),
                 number(now.over_noise if now else None, 2),
             )
         )
     return ("Test", "Use", "Motion", "What is left", "Residual", "Of motion", "Over noise", "Over noise, after"), rows
 
 
-def _value(one: Parameter | None) -> str:
-    if one is None:
+def _value(parameter: Parameter | None) -> str:
+    if parameter is None:
         return "–"
-    known = with_deviation(one.value, one.standard_deviation)
-    text = known if is_determined(one) else f"{bracketed(one.value)} {UNDETERMINED}"
-    return f"{text}, at its bound" if one.at_bound else text
+    value = with_deviation(parameter.value, parameter.standard_deviation)
+    text = value if is_determined(parameter) else f"{bracketed(parameter.value)} {UNDETERMINED}"
+    return f"{text}, at its bound" if parameter.at_bound else text
 
 
 def _use(saved: DiagnosisFile, id: str) -> str:

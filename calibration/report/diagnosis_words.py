@@ -29,10 +29,15 @@ def plain_name(name: str) -> str:
     return name.replace(".", " ").replace("_", " ")
 
 
-def is_determined(one: Parameter) -> bool:
-    """Whether the records determine a parameter: its deviation is below its value, or small against where it began."""
-    deviation = one.standard_deviation or 0.0
-    return one.identifiable and (deviation <= abs(one.value) or deviation < SMALL_DEVIATION * abs(one.start or 0.0))
+def is_determined(parameter: Parameter) -> bool:
+    """Whether the records determine a parameter.
+
+    Its standard deviation is below its value, or small against the value that the fit began from.
+    """
+    deviation = parameter.standard_deviation or 0.0
+    return parameter.identifiable and (
+        deviation <= abs(parameter.value) or deviation < SMALL_DEVIATION * abs(parameter.start or 0.0)
+    )
 
 
 def sorted_by_certainty(parameters: Mapping[str, Parameter]) -> list[tuple[str, Parameter]]:
@@ -40,27 +45,33 @@ def sorted_by_certainty(parameters: Mapping[str, Parameter]) -> list[tuple[str, 
     return sorted(parameters.items(), key=lambda item: not is_determined(item[1]))
 
 
-def describe_parameter(name: str, one: Parameter) -> str:
-    """A parameter of an effect: its name, value, deviation and unit; or that it is not determined, and what was fitted."""
-    text = quantity(one.value, one.standard_deviation, one.unit)
-    if not is_determined(one):
-        return f"{plain_name(name)} {UNDETERMINED}" + (f": fitted {text}" if one.identifiable else "")
-    more = ", at its bound" if one.at_bound else ""
-    if one.standard_deviation and abs(one.value) < NEAR_ZERO_DEVIATIONS * one.standard_deviation:
+def describe_parameter(name: str, parameter: Parameter) -> str:
+    """A parameter of an effect: its name, value, deviation and unit.
+
+    Where the records do not determine it, this is said, with the fitted value if it is identifiable.
+    """
+    text = quantity(parameter.value, parameter.standard_deviation, parameter.unit)
+    if not is_determined(parameter):
+        return f"{plain_name(name)} {UNDETERMINED}" + (f": fitted {text}" if parameter.identifiable else "")
+    more = ", at its bound" if parameter.at_bound else ""
+    if parameter.standard_deviation and abs(parameter.value) < NEAR_ZERO_DEVIATIONS * parameter.standard_deviation:
         more += f", less than {NEAR_ZERO_DEVIATIONS:g} standard deviations from zero"
     return f"{plain_name(name)} {text}{more}"
 
 
 def validation_tests(saved: DiagnosisFile) -> str:
-    """What the gain of an effect was found on: tests that were held out, or blocks of the fitted tests left out in turn."""
+    """Data on which the gain of an effect was found.
+
+    These are tests that were held out, or blocks of the fitted tests left out in turn.
+    """
     held = any(row.use == "holdout" for row in saved.augmented.error.values())
     return "held-out tests" if held else "blocks of the fitted tests left out in turn"
 
 
 def verdict_sentence(saved: DiagnosisFile) -> str:
-    """What a project lead has to know, in one sentence."""
+    """The verdict of a diagnosis in one sentence, for a project manager."""
     missing = saved.missing
-    named = [(effect_in_words(one.effect, one.degree_of_freedom), one.in_doubt is None) for one in missing.effects]
+    named = [(effect_in_words(effect.effect, effect.degree_of_freedom), effect.in_doubt is None) for effect in missing.effects]
     names, doubted = (listed([name for name, sure in named if sure is kind]) for kind in (True, False))
     if not saved.complete and not named:
         return UNFINISHED
@@ -79,13 +90,13 @@ def verdict_sentence(saved: DiagnosisFile) -> str:
 def error_reduction(saved: DiagnosisFile) -> str:
     """How much smaller errors are, of the held-out tests where there are any."""
     before, after = saved.baseline.objective, saved.augmented.objective
-    many, doubted = len(saved.missing.effects) > 1, any(one.in_doubt is not None for one in saved.missing.effects)
+    many, doubted = len(saved.missing.effects) > 1, any(effect.in_doubt is not None for effect in saved.missing.effects)
     added = f"with {'all that was found' if many and doubted else 'them' if many else 'it'} in the model, the error"
     if before.holdout and after.holdout is not None:
         return f"{added} of tests that were not fitted {describe_change(before.holdout, after.holdout)}"
-    said = f"{added} of the fitted tests {describe_change(before.fit, after.fit)}"
-    checked = any(one.evidence.holdout_gain is not None for one in saved.missing.effects)
-    return said if checked else f"{said}; no test was held out to check it"
+    sentence = f"{added} of the fitted tests {describe_change(before.fit, after.fit)}"
+    checked = any(effect.evidence.holdout_gain is not None for effect in saved.missing.effects)
+    return sentence if checked else f"{sentence}; no test was held out to check it"
 
 
 def describe_change(before: float, after: float) -> str:
@@ -102,10 +113,10 @@ def describe_change(before: float, after: float) -> str:
 def objectives_sentence(saved: DiagnosisFile) -> str:
     """Objective of the fitted and of the held-out tests, before and after the effects were added."""
     before, after = saved.baseline.objective, saved.augmented.objective
-    said = f"The error of the fitted tests {describe_change(before.fit, after.fit)}"
+    sentence = f"The error of the fitted tests {describe_change(before.fit, after.fit)}"
     if before.holdout is not None and after.holdout is not None:
-        said += f", that of the held-out tests {describe_change(before.holdout, after.holdout)}"
-    return f"{said}."
+        sentence += f", that of the held-out tests {describe_change(before.holdout, after.holdout)}"
+    return f"{sentence}."
 
 
 def describe_probability(probability: float | None) -> str:
@@ -115,10 +126,10 @@ def describe_probability(probability: float | None) -> str:
     return "above 99 %" if probability > 0.99 else "below 1 %" if probability < 0.01 else f"{100 * probability:.0f} %"
 
 
-def describe_range(one: FoundEffect, name: str) -> str:
+def describe_range(effect: FoundEffect, name: str) -> str:
     """Plausible range of an effect's parameter."""
-    size = one.plausible.get(name)
-    return "" if size is None else quantity_range(size.lower, size.upper, one.parameters[name].unit)
+    size = effect.plausible.get(name)
+    return "" if size is None else quantity_range(size.lower, size.upper, effect.parameters[name].unit)
 
 
 def evidence_strength(evidence: Evidence) -> str:
@@ -128,97 +139,99 @@ def evidence_strength(evidence: Evidence) -> str:
     return next((word for limit, word in EVIDENCE_STRENGTHS if evidence.delta_bic > limit), "none")
 
 
-def describe_certainty(saved: DiagnosisFile, one: FoundEffect) -> list[str]:
+def describe_certainty(saved: DiagnosisFile, effect: FoundEffect) -> list[str]:
     """How sure an effect is: sentences with their numbers."""
-    evidence = one.evidence
-    said = []
+    evidence = effect.evidence
+    sentences = []
     if evidence.probability is not None:
         many = len(saved.missing.effects) + len(saved.missing.rejected)
-        said.append(f"Its probability is {describe_probability(evidence.probability)}, among {many} effects compared together.")
+        sentences.append(
+            f"Its probability is {describe_probability(evidence.probability)}, among {many} effects compared together."
+        )
     if evidence.delta_bic is not None:
         fell = f"BIC falls by {number(evidence.delta_bic, 3)} (above 10 is very strong)"
-        said.append(f"{evidence_strength(evidence).capitalize()} evidence on the fitted tests: {fell}.")
+        sentences.append(f"{evidence_strength(evidence).capitalize()} evidence on the fitted tests: {fell}.")
     gain = evidence.holdout_gain
     if gain is None:
-        said.append("No test was held out to check it.")
+        sentences.append("No test was held out to check it.")
     elif gain >= 0:
-        said.append(f"The squared error of {validation_tests(saved)} falls by {percent(gain)} {WHERE}.")
+        sentences.append(f"The squared error of {validation_tests(saved)} falls by {percent(gain)} {WHERE}.")
     else:
-        said.append(f"The squared error of {validation_tests(saved)} grows by {percent(-gain)}.")
+        sentences.append(f"The squared error of {validation_tests(saved)} grows by {percent(-gain)}.")
     several = sum(row.use == "fit" for row in saved.augmented.error.values()) > 1  # else nothing is left to fit
     if several and evidence.left_out is not None and evidence.left_out_better is not None:
         better = f"{percent(evidence.left_out_better)} are predicted better with it"
         fell = f"−2 ln L falls by {number(evidence.left_out, 3)}"
-        said.append(f"Of whole fitted tests left out in turn (linearised model), {better}; {fell}.")
-    share = one.share_of_residual_explained
+        sentences.append(f"Of whole fitted tests left out in turn (linearised model), {better}; {fell}.")
+    share = effect.share_of_residual_explained
     whole = share is not None and 0.99 < share < 1
     part = "more than 99 %" if whole else percent(share)
-    said.append(f"It explains {part} of the squared error of all fitted tests above the noise.")
+    sentences.append(f"It explains {part} of the squared error of all fitted tests above the noise.")
     if evidence.clear is not None:
         away = f"{number(evidence.clear, 2)} standard deviations from zero"
-        said.append(f"All its parameters together are {away}." if len(one.parameters) > 1 else f"Its size is {away}.")
+        sentences.append(f"All its parameters together are {away}." if len(effect.parameters) > 1 else f"Its size is {away}.")
     if evidence.score is not None:
         fell = f"−2 ln L fell by {number(evidence.score, 3)}"
-        said.append(f"Its largest first-order gain in any round, beyond what the coefficients can explain: {fell}.")
-    return said
+        sentences.append(f"Its largest first-order gain in any round, beyond what the coefficients can explain: {fell}.")
+    return sentences
 
 
-def describe_alternatives(one: FoundEffect) -> str:
-    """What else it could be, and the test that would tell."""
-    names = listed([effect_in_words(other) for other in one.indistinguishable_from])
-    said = f"These records cannot tell it from {names}." if names else ""
-    if one.in_doubt == SECOND_ORDER:
-        said += (
+def describe_alternatives(effect: FoundEffect) -> str:
+    """Other effects that it could be, and the test that would tell."""
+    names = listed([effect_in_words(other) for other in effect.indistinguishable_from])
+    text = f"These records cannot tell it from {names}." if names else ""
+    if effect.in_doubt == SECOND_ORDER:
+        text += (
             " The second order of the waves, which the motions follow worse with, was left out (see the notes), and goes with "
             "their square as well: this may stand for what acts in its place."
         )
-    elif one.in_doubt == HELD_OUT_ERROR:
-        said += (
+    elif effect.in_doubt == HELD_OUT_ERROR:
+        text += (
             " With all that was found in the model the tests that were not fitted are followed worse than without, altogether "
             "or in this motion: it may stand for something else."
         )
-    elif one.in_doubt == IMPLAUSIBLE_SIZE:
+    elif effect.in_doubt == IMPLAUSIBLE_SIZE:
         ends = [
-            f"{plain_name(name)}, plausible from {describe_range(one, name)} ({size.source.rstrip('.')})"
-            for name, size in one.plausible.items()
+            f"{plain_name(name)}, plausible from {describe_range(effect, name)} ({size.source.rstrip('.')})"
+            for name, size in effect.plausible.items()
             if size.at_end
         ]
-        said += (
+        text += (
             f" The fitted size is at the end of what is plausible: {'; '.join(ends)}. Something acts like it, and is not, or "
             "not only, this."
         )
-    elif one.in_doubt is not None:
-        said += (
-            f" {capitalised(effect_in_words(one.in_doubt))} explains more of the fitted tests beside it than it does, and is "
-            "refused (see what was rejected): it may stand for something that neither is."
+    elif effect.in_doubt is not None:
+        text += (
+            f" {capitalised(effect_in_words(effect.in_doubt))} explains more of the fitted tests beside it than it does, and "
+            "is refused (see what was rejected): it may stand for something that neither is."
         )
-    elif not names and one.evidence.score is not None:
-        said = "No other effect that was tried does as well."
-    if one.test_that_would_tell:
-        said += f" A test that would tell: {one.test_that_would_tell.rstrip('.')}."
-    return said.strip()
+    elif not names and effect.evidence.score is not None:
+        text = "No other effect that was tried does as well."
+    if effect.test_that_would_tell:
+        text += f" A test that would tell: {effect.test_that_would_tell.rstrip('.')}."
+    return text.strip()
 
 
-def effect_in_three_lines(saved: DiagnosisFile, one: FoundEffect) -> tuple[str, str, str]:
+def effect_in_three_lines(saved: DiagnosisFile, effect: FoundEffect) -> tuple[str, str, str]:
     """Name and size of an effect; how sure it is; what else it could be, with the test that would tell."""
-    name = capitalised(effect_in_words(one.effect, one.degree_of_freedom))
-    sizes = "; ".join(describe_parameter(*item) for item in sorted_by_certainty(one.parameters))
-    evidence = one.evidence
+    name = capitalised(effect_in_words(effect.effect, effect.degree_of_freedom))
+    sizes = "; ".join(describe_parameter(*item) for item in sorted_by_certainty(effect.parameters))
+    evidence = effect.evidence
     gain = evidence.holdout_gain
-    found = [f"probability {describe_probability(evidence.probability)}"]
+    certainty = [f"probability {describe_probability(evidence.probability)}"]
     if gain is None:
-        found.append("no test was held out to check it")
+        certainty.append("no test was held out to check it")
     else:
         changes = f"falls by {percent(gain)} where it falls most" if gain >= 0 else f"grows by {percent(-gain)}"
-        found.append(f"squared error of {validation_tests(saved)} {changes}")
-    found.append(f"{evidence_strength(evidence)} evidence on the fitted tests")
-    against = describe_alternatives(one) or "Nothing else that was tried does as well."
-    return f"{name}: {sizes}" if sizes else name, f"  How sure: {'; '.join(found)}.", f"  What else it could be: {against}"
+        certainty.append(f"squared error of {validation_tests(saved)} {changes}")
+    certainty.append(f"{evidence_strength(evidence)} evidence on the fitted tests")
+    against = describe_alternatives(effect) or "Nothing else that was tried does as well."
+    return f"{name}: {sizes}" if sizes else name, f"  How sure: {'; '.join(certainty)}.", f"  What else it could be: {against}"
 
 
 def describe_unexplained(saved: DiagnosisFile) -> str:
-    """What nothing explains."""
-    left = saved.missing.unexplained
-    share = f"{percent(left.share)} of the squared error above the noise, motion by motion, is left unexplained"
-    said = share if saved.missing.effects else "What is left"
-    return f"{said}: {left.signature.rstrip('.')}." if left.signature else f"{said}."
+    """Sentence on the part of the error that nothing explains."""
+    residual = saved.missing.unexplained
+    share = f"{percent(residual.share)} of the squared error above the noise, motion by motion, is left unexplained"
+    subject = share if saved.missing.effects else "What is left"
+    return f"{subject}: {residual.signature.rstrip('.')}." if residual.signature else f"{subject}."

@@ -1,4 +1,4 @@
-"""Interactive part of a page: series that can be zoomed, and the platform in three dimensions as it moves.
+"""Interactive part of a page: series that can be zoomed, and the moving platform in three dimensions.
 
 The page holds plotly.js once, compressed. Series are 16-bit integers between their smallest and largest value, which is finer
 than a screen.
@@ -79,16 +79,16 @@ def plotly_script() -> str | None:
 
 
 def _notes(motion: RecordedMotion, thinning: int) -> list[str]:
-    said = []
+    notes = []
     if thinning > 1:
         step = 2 * thinning * max(float(np.median(np.diff(test.time))) for test in motion.tests)
-        said.append(f"Series are thinned: of every {number(step, 3)} s the smallest and the largest sample are shown.")
+        notes.append(f"Series are thinned: of every {number(step, 3)} s the smallest and the largest sample are shown.")
     if motion.offsets:
         sizes = listed([f"{number(size, 2)} {unit_of(name)} in {name}" for name, size in motion.offsets.items()])
-        said.append(f"Sensor offsets that the fit found are taken off the measured series: up to {sizes}.")
+        notes.append(f"Sensor offsets that the fit found are taken off the measured series: up to {sizes}.")
     if motion.hull is None:
-        said.append("No hull is drawn: the model has no members, or an earlier version wrote these results.")
-    return said
+        notes.append("No hull is drawn: the model has no members, or an earlier version wrote these results.")
+    return notes
 
 
 def _test(test: RecordedTest, thinning: int) -> dict[str, Any]:

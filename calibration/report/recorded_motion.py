@@ -46,8 +46,8 @@ class RecordedTest(NamedTuple):
         """The channels that are not next to still."""
         size = {name: max(float(np.nanmax(x) - np.nanmin(x)) for x in rows.values()) for name, rows in self.series.items()}
         largest = {unit: max((size[name] for name in size if unit_of(name) == unit), default=0.0) for unit in ("m", "deg")}
-        kept = {name: rows for name, rows in self.series.items() if size[name] > STILL_SHARE * largest[unit_of(name)]}
-        return kept or dict(list(self.series.items())[:1])
+        moving = {name: rows for name, rows in self.series.items() if size[name] > STILL_SHARE * largest[unit_of(name)]}
+        return moving or dict(list(self.series.items())[:1])
 
     def stretch(self) -> Stretch:
         """Ten periods from the release, or of the waves about their highest crest."""
@@ -118,26 +118,30 @@ def _names(data: xr.Dataset) -> list[str]:
 
 def _test(data: xr.Dataset, name: str) -> RecordedTest | None:
     """Series of a test up to its last sample; None where it has none."""
-    one = data.sel(test=name) if name else data
-    found: dict[str, dict[str, np.ndarray]] = {}
+    test = data.sel(test=name) if name else data
+    series: dict[str, dict[str, np.ndarray]] = {}
     for variable, source in WAVES.items():
-        if variable in one:
-            found.setdefault("wave", {})[source] = one[variable].values
-    for channel in map(str, one["channel"].values):
-        found[channel] = {source: one[source].sel(channel=channel).values for source in SOURCES if source in one}
+        if variable in test:
+            series.setdefault("wave", {})[source] = test[variable].values
+    for channel in map(str, test["channel"].values):
+        series[channel] = {source: test[source].sel(channel=channel).values for source in SOURCES if source in test}
     finite = {
         channel: {source: x for source, x in rows.items() if np.isfinite(x).any()}
-        for channel, rows in found.items()
+        for channel, rows in series.items()
         if any(np.isfinite(x).any() for x in rows.values())
     }
     if not any(channel in DOFS for channel in finite):
         return None
-    there = np.any([np.isfinite(x) for rows in finite.values() for x in rows.values()], axis=0)
-    count = int(np.flatnonzero(there)[-1]) + 1
-    kept = {channel: {source: x[:count] for source, x in rows.items()} for channel, rows in finite.items()}
-    released = str(one["degree_of_freedom"].values) if "degree_of_freedom" in one else ""
+    present = np.any([np.isfinite(x) for rows in finite.values() for x in rows.values()], axis=0)
+    count = int(np.flatnonzero(present)[-1]) + 1
+    trimmed = {channel: {source: x[:count] for source, x in rows.items()} for channel, rows in finite.items()}
+    released = str(test["degree_of_freedom"].values) if "degree_of_freedom" in test else ""
     return RecordedTest(
-        name, one["time"].values[:count], kept, released if released in kept else None, float(data.attrs.get("transient", 0.0))
+        name,
+        test["time"].values[:count],
+        trimmed,
+        released if released in trimmed else None,
+        float(data.attrs.get("transient", 0.0)),
     )
 
 

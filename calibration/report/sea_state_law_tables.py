@@ -8,7 +8,7 @@ from calibration.vocabulary import LAW_NAMES, Rows
 from jaxhydro.waves.sea_state import SeaState
 
 
-def laws_table(found: SeaLaws) -> Rows:
+def laws_table(sea_laws: SeaLaws) -> Rows:
     """Errors of every law, the chosen one marked."""
     rows = [
         (
@@ -16,26 +16,30 @@ def laws_table(found: SeaLaws) -> Rows:
             str(len(law.added())),
             number(law.fitted, 3),
             number(law.held_out, 3),
-            "chosen" if law is found.chosen else "",
+            "chosen" if law is sea_laws.chosen else "",
         )
-        for law in found.laws
+        for law in sea_laws.laws
     ]
-    judged = "left out in turn" if found.left_out else "held out"
+    judged = "left out in turn" if sea_laws.left_out else "held out"
     return ("Coefficients", "Added", "Error, fitted", f"Error, {judged}", ""), rows
 
 
-def states_table(found: SeaLaws) -> Rows:
+def states_table(sea_laws: SeaLaws) -> Rows:
     """Coefficients of every sea alone, and by the chosen law."""
 
     def cells(label: str) -> Iterator[str]:
-        for sea in found.seas:
-            one = sea.calibration.parameters[label]
-            value, deviation = found.chosen.coefficient(label, sea.state)
-            alone = with_deviation(one.value, one.standard_deviation) if one.identifiable else f"({number(one.value, 2)})"
+        for sea in sea_laws.seas:
+            parameter = sea.calibration.parameters[label]
+            value, deviation = sea_laws.chosen.coefficient(label, sea.state)
+            alone = (
+                with_deviation(parameter.value, parameter.standard_deviation)
+                if parameter.identifiable
+                else f"({number(parameter.value, 2)})"
+            )
             yield f"{alone} | {number(value, 3)} ± {percent(deviation)}"
 
-    heads = [f"{sea.id}: {state_words(sea.state)}" for sea in found.seas]
-    return ("Coefficient", *heads), [(label, *cells(label)) for label in found.labels()]
+    heads = [f"{sea.id}: {state_words(sea.state)}" for sea in sea_laws.seas]
+    return ("Coefficient", *heads), [(label, *cells(label)) for label in sea_laws.labels()]
 
 
 def state_words(state: SeaState) -> str:
@@ -43,13 +47,13 @@ def state_words(state: SeaState) -> str:
     return f"Hs {number(state.significant_height, 2)} m, Tp {number(state.peak_period, 3)} s"
 
 
-def sentence(found: SeaLaws) -> str:
+def sentence(sea_laws: SeaLaws) -> str:
     """Which law, and what it gains."""
-    chosen, plain = found.chosen, found.laws[0]
-    if not found.finished:
-        tried = ", ".join(LAW_NAMES[law.name] for law in found.laws)
+    chosen, plain = sea_laws.chosen, sea_laws.laws[0]
+    if not sea_laws.finished:
+        tried = ", ".join(LAW_NAMES[law.name] for law in sea_laws.laws)
         return f"Stopped by the user: of {tried} the best is {LAW_NAMES[chosen.name]}"
-    by = f"{', '.join(found.judged_by)} {'left out in turn' if found.left_out else 'held out'}"
+    by = f"{', '.join(sea_laws.judged_by)} {'left out in turn' if sea_laws.left_out else 'held out'}"
     if chosen is plain:
         return f"No law does better than {LAW_NAMES[plain.name]} coefficients on {by} (error {number(plain.held_out, 3)})"
     gain = f"error {number(plain.held_out, 3)} of {LAW_NAMES[plain.name]} coefficients to {number(chosen.held_out, 3)}"

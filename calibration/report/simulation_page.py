@@ -52,10 +52,10 @@ SEA_PROPERTIES = {
 
 
 class MotionSummary(NamedTuple):
-    """What the sentence on a simulation says.
+    """Facts for the sentence on a simulation.
 
     Attributes:
-        conditions: What the platform was in, such as "a sea of Hs 3.1 m, Tp 8.96 s".
+        conditions: Sea or waves that the platform was in, such as "a sea of Hs 3.1 m, Tp 8.96 s".
         largest: Largest distance from zero (m, deg), standard deviation and unit of every motion that matters.
     """
 
@@ -71,20 +71,22 @@ def summary_of(attributes: Mapping[str, Any], statistics: Mapping[str, Any]) -> 
         statistics: Statistics by channel, as in statistics.json.
     """
     sizes = {
-        name: (max(abs(one["minimum"]), abs(one["maximum"])), one["standard_deviation"], one["unit"])
-        for name, one in statistics.items()
+        name: (max(abs(channel["minimum"]), abs(channel["maximum"])), channel["standard_deviation"], channel["unit"])
+        for name, channel in statistics.items()
         if name in DOFS
     }
-    most = {unit: max((size for size, _, own in sizes.values() if own == unit), default=0.0) for unit in ("m", "deg")}
-    kept = {name: row for name, row in sizes.items() if row[0] > max(MIN_SHARE * most[row[2]], 1e-9)}
-    return MotionSummary(_conditions(attributes), kept)
+    most = {
+        unit: max((size for size, _, size_unit in sizes.values() if size_unit == unit), default=0.0) for unit in ("m", "deg")
+    }
+    largest = {name: row for name, row in sizes.items() if row[0] > max(MIN_SHARE * most[row[2]], 1e-9)}
+    return MotionSummary(_conditions(attributes), largest)
 
 
 def _conditions(about: Mapping[str, Any]) -> str:
     height, period = about.get("significant_wave_height"), about.get("peak_period")
     if "record" in about:
-        said = f"the waves of {about['record']}"
-        return f"{said} (Hs {number(height, 3)} m)" if height else said
+        waves = f"the waves of {about['record']}"
+        return f"{waves} (Hs {number(height, 3)} m)" if height else waves
     if height is not None:
         peak = f", Tp {number(period, 3)} s" if period else ", white noise"
         return f"a sea of Hs {number(height, 3)} m{peak}"
@@ -93,18 +95,18 @@ def _conditions(about: Mapping[str, Any]) -> str:
     return "still water"
 
 
-def simulation_sentence(found: MotionSummary) -> str:
+def simulation_sentence(motion_summary: MotionSummary) -> str:
     """A simulation in one sentence.
 
     "In a sea of Hs 3.1 m, Tp 8.96 s the platform moves up to 2.1 m in surge and 1.4 deg in pitch (standard deviations 0.5 m
     and 0.4 deg)."
     """
-    if not found.largest:
-        return f"In {found.conditions} the platform does not move."
-    most = listed([f"{number(size, 3)} {unit} in {name}" for name, (size, _, unit) in found.largest.items()])
-    spread = listed([f"{number(deviation, 2)} {unit}" for _, deviation, unit in found.largest.values()])
-    noun = "standard deviation" if len(found.largest) == 1 else "standard deviations"
-    return f"In {found.conditions} the platform moves up to {most} ({noun} {spread})."
+    if not motion_summary.largest:
+        return f"In {motion_summary.conditions} the platform does not move."
+    most = listed([f"{number(size, 3)} {unit} in {name}" for name, (size, _, unit) in motion_summary.largest.items()])
+    spread = listed([f"{number(deviation, 2)} {unit}" for _, deviation, unit in motion_summary.largest.values()])
+    noun = "standard deviation" if len(motion_summary.largest) == 1 else "standard deviations"
+    return f"In {motion_summary.conditions} the platform moves up to {most} ({noun} {spread})."
 
 
 def page(folder: Path) -> str:
@@ -114,7 +116,7 @@ def page(folder: Path) -> str:
             data = opened.load()
         results = _results(data, folder)
         statistics, bands = tables(results)
-        found = summary_of(data.attrs, results["statistics"])
+        motion_summary = summary_of(data.attrs, results["statistics"])
         version = str(data.attrs["source"]).removeprefix("jaxhydro ")
         response = regular_response(data)
         title, window = str(data.attrs["title"]), results["window"]
@@ -127,7 +129,7 @@ def page(folder: Path) -> str:
         by="Simulation",
         version=version,
         date=written_on(folder / MOTION_FILE),
-        sentence=response_sentence(found.conditions, response) if response else simulation_sentence(found),
+        sentence=response_sentence(motion_summary.conditions, response) if response else simulation_sentence(motion_summary),
         span=f"{window[0]:g} to {window[1]:g} s",
         statistics=(statistics[0], [row for row in statistics[1] if not _is_still(row[0], results)]),
         still=listed(still) if (still := [name for name in results["statistics"] if _is_still(name, results)]) else "",
@@ -144,8 +146,8 @@ def _results(data: xr.Dataset, folder: Path) -> dict[str, Any]:
     """Statistics as statistics.json has them; of the whole record where there is none."""
     path = folder / STATISTICS
     if path.is_file():
-        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        return found
+        statistics: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        return statistics
     values = {str(name): data["simulated"].sel(channel=name).values for name in data["channel"].values}
     waves = {"wave": data["wave"].values} if "wave" in data else {}
     return summary(data["time"].values, {**waves, **values}, None) | {"bands": {}}
@@ -153,8 +155,8 @@ def _results(data: xr.Dataset, folder: Path) -> dict[str, Any]:
 
 def _is_still(heading: str, results: Mapping[str, Any]) -> bool:
     """Whether a channel, named as in a table of statistics, does not move."""
-    one = results["statistics"][heading.split(" ")[0]]
-    return max(abs(one["minimum"]), abs(one["maximum"])) <= MIN_RANGE
+    channel = results["statistics"][heading.split(" ")[0]]
+    return max(abs(channel["minimum"]), abs(channel["maximum"])) <= MIN_RANGE
 
 
 class RegularResponse(NamedTuple):
@@ -167,7 +169,9 @@ class RegularResponse(NamedTuple):
 
 
 def regular_response(data: xr.Dataset) -> dict[str, RegularResponse]:
-    """Response of every motion at the wave period, by least squares over the last half of the record in whole periods.
+    """Response of every motion at the period of regular waves, by least squares.
+
+    The last half of the record is used, in whole periods.
 
     Args:
         data: Content of simulated.nc.
@@ -182,30 +186,33 @@ def regular_response(data: xr.Dataset) -> dict[str, RegularResponse]:
     keep = time >= time[-1] - whole - 1e-9
     phase = 2 * np.pi / period * time[keep]
     basis = np.stack([np.ones_like(phase), np.cos(phase), np.sin(phase)], axis=1)
-    found = {}
+    responses = {}
     for name, unit in zip(map(str, data["channel"].values), map(str, data["unit"].values), strict=True):
         values = data["simulated"].sel(channel=name).values[keep]
         mean, cosine, sine = map(float, np.linalg.lstsq(basis, values, rcond=None)[0])
         amplitude = float(np.hypot(cosine, sine))
         if np.ptp(values) > MIN_RANGE:
-            found[name] = RegularResponse(unit, mean, amplitude, amplitude / (0.5 * float(data.attrs["wave_height"])))
-    return found
+            responses[name] = RegularResponse(unit, mean, amplitude, amplitude / (0.5 * float(data.attrs["wave_height"])))
+    return responses
 
 
-def response_sentence(conditions: str, found: Mapping[str, RegularResponse]) -> str:
+def response_sentence(conditions: str, responses: Mapping[str, RegularResponse]) -> str:
     """The response to regular waves in one sentence.
 
     "In regular waves of 3 m, 10 s the amplitudes are 0.37 m in surge (0.25 m per m of wave amplitude) ..."
     """
-    most = {unit: max((one.amplitude for one in found.values() if one.unit == unit), default=0.0) for unit in ("m", "deg")}
-    large = {name: one for name, one in found.items() if one.amplitude > MIN_SHARE * most[one.unit]}
-    said = [f"{number(one.amplitude, 3)} {one.unit} in {name}" for name, one in large.items()]
-    each = [f"{number(one.per_metre, 2)} {one.unit}" for one in large.values()]
-    return f"In {conditions} the amplitudes are {listed(said)} ({listed(each)} per m of wave amplitude)."
+    most = {
+        unit: max((response.amplitude for response in responses.values() if response.unit == unit), default=0.0)
+        for unit in ("m", "deg")
+    }
+    large = {name: response for name, response in responses.items() if response.amplitude > MIN_SHARE * most[response.unit]}
+    amplitudes = [f"{number(response.amplitude, 3)} {response.unit} in {name}" for name, response in large.items()]
+    each = [f"{number(response.per_metre, 2)} {response.unit}" for response in large.values()]
+    return f"In {conditions} the amplitudes are {listed(amplitudes)} ({listed(each)} per m of wave amplitude)."
 
 
-def _response_table(found: Mapping[str, RegularResponse]) -> Rows:
-    rows = [(name, one.unit, *(number(x, 3) for x in one[1:])) for name, one in found.items()]
+def _response_table(responses: Mapping[str, RegularResponse]) -> Rows:
+    rows = [(name, response.unit, *(number(x, 3) for x in response[1:])) for name, response in responses.items()]
     return ("Motion", "Unit", "Mean", "Amplitude", "Per m of wave amplitude"), rows
 
 

@@ -39,8 +39,17 @@ class FarOff(NamedTuple):
 
 
 class CalibrationSummary(NamedTuple):
-    """What the sentence says. `not_followed` are fitted decays by id, with RMSE over standard deviation; `far_off` are fitted
-    tests in irregular waves whose energy is off by more than `FAR_OFF_ERROR` in a band."""
+    """Facts for the sentence on a calibration.
+
+    Attributes:
+        converged: Whether the fit converged.
+        not_followed: Fitted decays that the model does not follow, with RMSE over standard deviation (-).
+        far_off: Fitted tests in irregular waves whose energy is off by more than `FAR_OFF_ERROR` in a band.
+        agreements: How well the tests of each kind and use are followed.
+        determined: Coefficients that the records determine.
+        undetermined: Coefficients that they do not determine.
+        at_bound: Coefficients that are at a bound.
+    """
 
     converged: bool
     not_followed: dict[str, float]
@@ -58,7 +67,7 @@ class CalibrationSummary(NamedTuple):
 
 def summary_of(saved: CalibrationFile) -> CalibrationSummary:
     """Summary of a calibration."""
-    errors, bands = {id: one.channels for id, one in saved.baseline.error.items()}, saved.bands()
+    errors, bands = {id: test_error.channels for id, test_error in saved.baseline.error.items()}, saved.bands()
     groups: dict[tuple[str, str], list[str]] = {}
     lost: dict[str, float] = {}
     far: dict[str, FarOff] = {}
@@ -66,11 +75,11 @@ def summary_of(saved: CalibrationFile) -> CalibrationSummary:
         kind, use = _kind(saved, id), saved.baseline.error[id].use
         if use in ("fit", "holdout"):
             groups.setdefault((use, kind), []).append(id)
-        scored = [one.relative for one in channels.values() if one.in_objective]
+        scored = [channel.relative for channel in channels.values() if channel.in_objective]
         if use == "fit" and kind == "decay" and scored and max(scored) >= NOT_FOLLOWED_ERROR:
             lost[id] = max(scored)
         energies = [FarOff(name, band, abs(after)) for name, row in bands[id].items() for band, (_, after) in row.items()]
-        worst = max(energies, key=lambda one: one.error, default=None)
+        worst = max(energies, key=lambda energy: energy.error, default=None)
         if use == "fit" and worst is not None and worst.error > FAR_OFF_ERROR:
             far[id] = worst
     agreements = tuple(
@@ -78,13 +87,16 @@ def summary_of(saved: CalibrationFile) -> CalibrationSummary:
         for (use, kind), ids in sorted(groups.items(), key=lambda item: item[0][0])  # "fit" before "holdout"
     )
     parameters = saved.baseline.parameters
-    determined = tuple(label for label, one in parameters.items() if _is_determined(one))
+    determined = tuple(label for label, parameter in parameters.items() if _is_determined(parameter))
     return CalibrationSummary(saved.baseline.converged, lost, far, agreements, determined, *_others(parameters, determined))
 
 
-def _is_determined(one: Parameter) -> bool:
-    """Whether the records determine a coefficient: identifiable, off its bounds, and larger than its standard deviation."""
-    return one.identifiable and not one.at_bound and (one.standard_deviation or 0.0) <= abs(one.value)
+def _is_determined(parameter: Parameter) -> bool:
+    """Whether the records determine a coefficient.
+
+    It is identifiable, off its bounds, and no smaller than its standard deviation.
+    """
+    return parameter.identifiable and not parameter.at_bound and (parameter.standard_deviation or 0.0) <= abs(parameter.value)
 
 
 def _kind(saved: CalibrationFile, id: str) -> str:
@@ -101,7 +113,7 @@ def _others(parameters: Mapping[str, Parameter], determined: Sequence[str]) -> t
 
 
 def _agreement(kind: str, use: str, errors: Sequence[Mapping[str, ChannelError]], bands: Sequence[Bands]) -> Agreement:
-    relative = tuple(one.relative for channels in errors for one in channels.values() if one.in_objective)
+    relative = tuple(channel.relative for channels in errors for channel in channels.values() if channel.in_objective)
     energies: dict[str, list[float]] = {}
     for channels in bands:
         for row in channels.values():
@@ -111,16 +123,20 @@ def _agreement(kind: str, use: str, errors: Sequence[Mapping[str, ChannelError]]
 
 
 def calibration_sentence(summary: CalibrationSummary) -> str:
-    """What the calibration came to. What went wrong comes first.
+    """Result of a calibration in one sentence, failures first.
 
     "9 decays followed to 0.4-1.7 %; all 11 coefficients determined."
     """
     # of a model that does not follow a decay, values mean little
-    known = [] if summary.not_followed else [_determined(summary)]
-    parts = [*map(agreement_phrase, summary.agreements), *known]
+    determined = [] if summary.not_followed else [_determined(summary)]
+    parts = [*map(agreement_phrase, summary.agreements), *determined]
     # bands make clauses long: they are sentences of their own
-    said = [f"{part}." for part in parts] if any(one.bands for one in summary.agreements) else [f"{'; '.join(parts)}."]
-    return " ".join([*_failures(summary), *(re.sub("^(all|no) ", lambda word: word[0].capitalize(), one) for one in said)])
+    sentences = (
+        [f"{part}." for part in parts] if any(agreement.bands for agreement in summary.agreements) else [f"{'; '.join(parts)}."]
+    )
+    return " ".join(
+        [*_failures(summary), *(re.sub("^(all|no) ", lambda word: word[0].capitalize(), sentence) for sentence in sentences)]
+    )
 
 
 def _failures(summary: CalibrationSummary) -> Iterator[str]:
@@ -138,29 +154,29 @@ def _failures(summary: CalibrationSummary) -> Iterator[str]:
         yield "The fit did not converge."
 
 
-def agreement_phrase(one: Agreement) -> str:
+def agreement_phrase(agreement: Agreement) -> str:
     """How well the tests of one kind and use are followed: "9 decays followed to 0.4-1.7 %"."""
-    held = "held-out " if one.use == "holdout" else ""
-    tests = counted(one.tests, f"{held}{KINDS.get(one.kind, 'test')}") + WAVES_PHRASES.get(one.kind, "")
-    if one.bands:
-        parts = [f"{BANDS.get(band, band)} energy off by {percent_span(values)}" for band, values in one.bands.items()]
+    held = "held-out " if agreement.use == "holdout" else ""
+    tests = counted(agreement.tests, f"{held}{KINDS.get(agreement.kind, 'test')}") + WAVES_PHRASES.get(agreement.kind, "")
+    if agreement.bands:
+        parts = [f"{BANDS.get(band, band)} energy off by {percent_span(values)}" for band, values in agreement.bands.items()]
         return f"{tests}: {listed(parts)}"
-    return f"{tests} followed to {percent_span(one.errors)}" if one.errors else f"{tests} not followed"
+    return f"{tests} followed to {percent_span(agreement.errors)}" if agreement.errors else f"{tests} not followed"
 
 
 def _determined(summary: CalibrationSummary) -> str:
-    known, vague, bound = summary.determined, summary.undetermined, summary.at_bound
-    total = len(known) + len(vague) + len(bound)
+    determined, vague, bound = summary.determined, summary.undetermined, summary.at_bound
+    total = len(determined) + len(vague) + len(bound)
     if not total:
         return "no coefficient fitted"
-    if total == 1 and not known:
+    if total == 1 and not determined:
         return f"{bound[0]} is at a bound" if bound else f"{vague[0]} not determined"
-    if total == len(known):
-        return f"all {total} coefficients determined" if total > 1 else f"{known[0]} determined"
-    said = f"{len(known)} of {counted(total, 'coefficient')} determined"
+    if total == len(determined):
+        return f"all {total} coefficients determined" if total > 1 else f"{determined[0]} determined"
+    text = f"{len(determined)} of {counted(total, 'coefficient')} determined"
     if vague:
-        said += f"; not determined: {_named(vague, 'coefficient')}"
-    return f"{said}; at a bound: {_named(bound, 'coefficient')}" if bound else said
+        text += f"; not determined: {_named(vague, 'coefficient')}"
+    return f"{text}; at a bound: {_named(bound, 'coefficient')}" if bound else text
 
 
 def _named(names: Sequence[str], noun: str) -> str:

@@ -35,7 +35,13 @@ STATISTICS = {
 
 
 class SweepSummary(NamedTuple):
-    """What the sentence on a sweep says: runs in all and done, and the extremes of every motion with its unit."""
+    """Facts for the sentence on a sweep.
+
+    Attributes:
+        total: Number of runs.
+        done: Number of runs that are done.
+        extremes: Minimum, maximum and unit of every motion.
+    """
 
     total: int
     done: int
@@ -45,9 +51,9 @@ class SweepSummary(NamedTuple):
 def summary_of(saved: SweepResults) -> SweepSummary:
     """The summary of a sweep.json."""
     extremes = {
-        channel: (one.minimum, one.maximum, one.unit)
-        for channel, one in saved.lifetime.items()
-        if channel in DOFS and one.minimum is not None and one.maximum is not None
+        channel: (statistics.minimum, statistics.maximum, statistics.unit)
+        for channel, statistics in saved.lifetime.items()
+        if channel in DOFS and statistics.minimum is not None and statistics.maximum is not None
     }
     return SweepSummary(saved.runs.total, saved.runs.done, extremes)
 
@@ -59,8 +65,8 @@ def sweep_sentence(summary: SweepSummary) -> str:
     """
     done, total = summary.done, summary.total
     runs = f"{'All ' * (total > 1)}{counted(total, 'run')} done" if done == total else f"{done} of {total} runs done"
-    said = [f"{name} {number(low, 3)} to {number(high, 3)} {unit}" for name, (low, high, unit) in summary.extremes.items()]
-    return f"{runs}; extremes over the life: {joined(said)}." if said and done else f"{runs}."
+    extremes = [f"{name} {number(low, 3)} to {number(high, 3)} {unit}" for name, (low, high, unit) in summary.extremes.items()]
+    return f"{runs}; extremes over the life: {joined(extremes)}." if extremes and done else f"{runs}."
 
 
 def page(saved: SweepResults, folder: Path) -> str:
@@ -84,14 +90,17 @@ def page(saved: SweepResults, folder: Path) -> str:
         statistics=_statistics(saved),
         ranges=_ranges(saved),
         properties=list(_run(saved)),
-        failures=[f"{runs_in_words(State.of(one), one.headings, one.seeds)}: {one.reason}" for one in saved.failures],
+        failures=[
+            f"{runs_in_words(State.of(failure), failure.headings, failure.seeds)}: {failure.reason}"
+            for failure in saved.failures
+        ],
         images=embedded({folder / name: caption for name, caption in FIGURES.items()}).values(),
     )
 
 
 def _run(saved: SweepResults) -> Iterator[tuple[str, str]]:
     how, seeds = saved.options, len(saved.seeds)
-    headings = ", ".join(f"{one.heading:g} deg ({percent(one.probability)})" for one in saved.headings)
+    headings = ", ".join(f"{heading.heading:g} deg ({percent(heading.probability)})" for heading in saved.headings)
     yield "Runs", f"{saved.runs.done} of {saved.runs.total} done"
     yield "Sea states", f"{saved.sea_states}"
     yield "Headings, and shares of the life", headings
@@ -109,17 +118,17 @@ def _run(saved: SweepResults) -> Iterator[tuple[str, str]]:
 def _statistics(saved: SweepResults) -> Rows:
     """Statistics of every channel."""
     rows = [
-        (f"{channel} ({one.unit})", *(number(getattr(one, name)) for name in STATISTICS))
-        for channel, one in saved.lifetime.items()
+        (f"{channel} ({statistics.unit})", *(number(getattr(statistics, name)) for name in STATISTICS))
+        for channel, statistics in saved.lifetime.items()
     ]
     return ("Channel", *STATISTICS.values()), rows
 
 
 def _ranges(saved: SweepResults) -> Rows:
     """Equivalent ranges of every channel: a table of its own, since one would be wider than a page."""
-    exponents = list(dict.fromkeys(m for one in saved.lifetime.values() for m in one.damage_equivalent_range))
+    exponents = list(dict.fromkeys(m for statistics in saved.lifetime.values() for m in statistics.damage_equivalent_range))
     rows = [
-        (f"{channel} ({one.unit})", *(number(one.damage_equivalent_range.get(m)) for m in exponents))
-        for channel, one in saved.lifetime.items()
+        (f"{channel} ({statistics.unit})", *(number(statistics.damage_equivalent_range.get(m)) for m in exponents))
+        for channel, statistics in saved.lifetime.items()
     ]
     return ("Channel", *(f"Equivalent range, m = {m}" for m in exponents)), rows

@@ -24,39 +24,39 @@ def count_tests(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
     tests = campaign.manifest.tests
     count = Counter(USE[t.use] if t.use == "ignore" or t.kind in kinds else f"left out ({t.kind})" for t in tests)
     order = {word: i for i, word in enumerate(USE.values())}
-    there = [(count[word], word) for word in sorted(count, key=lambda word: (order.get(word, len(order)), word))]
-    return ", ".join(f"{n} {'test' if n == 1 else 'tests'} {word}" for n, word in there)
+    counts = [(count[word], word) for word in sorted(count, key=lambda word: (order.get(word, len(order)), word))]
+    return ", ".join(f"{n} {'test' if n == 1 else 'tests'} {word}" for n, word in counts)
 
 
-def findings(found: Iterable[Finding]) -> Rows:
+def findings(warnings: Iterable[Finding]) -> Rows:
     """The warnings about the records, each once."""
     return ("Test", "File", "Channel", "Warning"), [
-        (one.where, one.source, one.channel, one.message) for one in group_findings(found)
+        (group.where, group.source, group.channel, group.message) for group in group_findings(warnings)
     ]
 
 
 def parameters(saved: CalibrationFile) -> Rows:
     """Meaning, start, value and standard deviation of every coefficient."""
     rows = [
-        (label, one.meaning, number(one.start, 3), value_text(one), readable_unit(one.unit))
-        for label, one in saved.baseline.parameters.items()
+        (label, parameter.meaning, number(parameter.start, 3), value_text(parameter), readable_unit(parameter.unit))
+        for label, parameter in saved.baseline.parameters.items()
     ]
     return ("Parameter", "Meaning", "Start", "Calibrated ± 1 sd", "Unit"), rows
 
 
-def value_text(one: Parameter) -> str:
+def value_text(parameter: Parameter) -> str:
     """A calibrated value with its standard deviation; in brackets where the records do not determine it."""
-    known = with_deviation(one.value, one.standard_deviation)
-    text = known if one.identifiable else f"{bracketed(one.value)} {UNDETERMINED}"
-    return f"{text}, at its bound" if one.at_bound else text
+    value = with_deviation(parameter.value, parameter.standard_deviation)
+    text = value if parameter.identifiable else f"{bracketed(parameter.value)} {UNDETERMINED}"
+    return f"{text}, at its bound" if parameter.at_bound else text
 
 
 def errors(saved: CalibrationFile) -> Rows:
     """Errors of the motions that count in the fit, of every test."""
     rows = []
     for id, error in saved.baseline.error.items():
-        scored = {name: one for name, one in error.channels.items() if one.in_objective}
-        rows += [(id, *_test(saved, id), name, *_error(one)) for name, one in scored.items()]
+        scored = {name: channel for name, channel in error.channels.items() if channel.in_objective}
+        rows += [(id, *_test(saved, id), name, *_error(channel)) for name, channel in scored.items()]
         if not error.channels:
             rows.append((id, *_test(saved, id), "", "–", "not finite", ""))
     return ("Test", "Kind", "Length", "Use", "Motion", "Before", "After", "RMSE"), rows
@@ -66,8 +66,8 @@ def other_motions(saved: CalibrationFile) -> Rows:
     """Errors of the motions beside those that count in the fit."""
     rows = []
     for id, error in saved.baseline.error.items():
-        others = {name: one for name, one in error.channels.items() if not one.in_objective}
-        rows += [(id, _use(saved, id), name, *_error(one)) for name, one in others.items()]
+        others = {name: channel for name, channel in error.channels.items() if not channel.in_objective}
+        rows += [(id, _use(saved, id), name, *_error(channel)) for name, channel in others.items()]
     return ("Test", "Use", "Motion", "Before", "After", "RMSE"), rows
 
 
@@ -90,27 +90,36 @@ def _error(error: ChannelError) -> tuple[str, str, str]:
 
 
 def linear_quadratic(saved: CalibrationFile) -> Rows:
-    """The classical linear and quadratic damping of every decay with enough cycles, measured and simulated."""
+    """The classical linear and quadratic damping of every decay with enough cycles.
+
+    Both are measured and simulated.
+    """
     rows = []
     for id, about in saved.tests.items():
-        if (one := about.linear_quadratic) is not None:
+        if (damping := about.linear_quadratic) is not None:
             values = [
                 text
-                for term in (one.linear, one.quadratic)
+                for term in (damping.linear, damping.quadratic)
                 for text in (with_deviation(term.measured, term.half_width), number(term.simulated, 3))
             ]
-            rows.append((id, number(one.period, 4), *values, f"1/{one.unit}"))
+            rows.append((id, number(damping.period, 4), *values, f"1/{damping.unit}"))
     heads = ("Test", "Period (s)", "p measured ± 95 % (1/s)", "p simulated (1/s)", "q measured ± 95 %", "q simulated")
     return (*heads, "Unit of q"), rows
 
 
 def damping_outside(saved: CalibrationFile) -> str:
-    """Where the simulated damping is far outside the measured interval, in sentences; "" where it is nowhere."""
+    """Sentences on decays whose simulated damping is far outside the measured interval.
+
+    Returns:
+        The sentences; "" where there is no such decay.
+    """
     outside = []
     for id, about in saved.tests.items():
         if (both := about.linear_quadratic) is not None:
             terms = {"p": both.linear, "q": both.quadratic}
-            far = [name for name, one in terms.items() if abs(one.simulated - one.measured) > MAX_HALF_WIDTHS * one.half_width]
+            far = [
+                name for name, term in terms.items() if abs(term.simulated - term.measured) > MAX_HALF_WIDTHS * term.half_width
+            ]
             outside += [f"{' and '.join(far)} of {id}"] if far else []
     if not outside:
         return ""
@@ -134,7 +143,10 @@ def bands(saved: CalibrationFile) -> Rows:
 
 
 def outcome_sentence(saved: CalibrationFile) -> str:
-    """One line: the objective and how it was reached. Of tests in waves J is no objective: they are fitted by others."""
+    """One line: the objective J and how it was reached.
+
+    Tests in waves are fitted by other objectives, so J is not called the objective of these.
+    """
     fitted = saved.baseline
     in_waves = any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values())
     name = "J, the sum" if in_waves else "Objective J, the sum"
@@ -151,35 +163,37 @@ def comparison_with_truth(saved: CalibrationFile) -> Rows:
     """Calibrated values beside the true ones."""
     rows = []
     for label, true in saved.truth.items():
-        one = saved.baseline.parameters.get(label)
-        if one is None:
+        parameter = saved.baseline.parameters.get(label)
+        if parameter is None:
             rows.append((label, number(true, 3), "not calibrated", "", "–", "–"))
             continue
         sizes = ("–", "–")
-        if one.identifiable:
-            away = deviations_away(one, true)
-            sizes = (percent((one.value - true) / true) if true else "–", "–" if away is None else f"{away:+.1f} sd")
-        rows.append((label, number(true, 3), value_text(one), readable_unit(one.unit), *sizes))
+        if parameter.identifiable:
+            away = deviations_away(parameter, true)
+            sizes = (percent((parameter.value - true) / true) if true else "–", "–" if away is None else f"{away:+.1f} sd")
+        rows.append((label, number(true, 3), value_text(parameter), readable_unit(parameter.unit), *sizes))
     return ("Parameter", "True", "Calibrated ± 1 sd", "Unit", "Off by", "Off by, in sd"), rows
 
 
-def deviations_away(one: Parameter, true: float) -> float | None:
+def deviations_away(parameter: Parameter, true: float) -> float | None:
     """Standard deviations from the true value; None where the records do not determine the coefficient."""
-    sd = one.standard_deviation
-    return (one.value - true) / sd if one.identifiable and sd is not None and sd > 0 else None
+    sd = parameter.standard_deviation
+    return (parameter.value - true) / sd if parameter.identifiable and sd is not None and sd > 0 else None
 
 
 def agreement_with_truth(saved: CalibrationFile) -> str:
     """How many coefficients lie near the true values, in a sentence."""
-    known = {label: saved.baseline.parameters.get(label) for label in saved.truth}
-    away = [None if one is None else deviations_away(one, saved.truth[label]) for label, one in known.items()]
-    near = sum(one is not None and abs(one) <= AGREEMENT_DEVIATIONS for one in away)
-    largest = max((abs(one) for one in away if one is not None), default=None)
+    calibrated = {label: saved.baseline.parameters.get(label) for label in saved.truth}
+    away = [
+        None if parameter is None else deviations_away(parameter, saved.truth[label]) for label, parameter in calibrated.items()
+    ]
+    near = sum(sd is not None and abs(sd) <= AGREEMENT_DEVIATIONS for sd in away)
+    largest = max((abs(sd) for sd in away if sd is not None), default=None)
     farthest = "" if largest is None else f"; the farthest is {largest:.1f} away"
     limit = f"{AGREEMENT_DEVIATIONS:g} standard deviations"
     return f"{near} of {len(away)} coefficients lie within {limit} of the true values{farthest}."
 
 
 def mark_unfinished(partial: Calibration) -> Calibration:
-    """What was reached when the user stopped the fit, marked as not converged."""
+    """Mark a calibration that the user stopped as not converged."""
     return replace(partial, converged=False, notes=("stopped by the user before it converged", *partial.notes))

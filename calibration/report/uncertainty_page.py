@@ -26,7 +26,7 @@ def page(saved: UncertaintyFile, folder: Path) -> str:
         saved=saved,
         sentence=interval_sentence(summary_of(saved)),
         parameters=_parameters(saved),
-        undetermined=[i for i, one in enumerate(saved.parameters.values()) if not one.identifiable],
+        undetermined=[i for i, parameter in enumerate(saved.parameters.values()) if not parameter.identifiable],
         others=other_intervals_table(saved),
         methods=INTERVAL_METHODS,
         times=lambda way: f"{saved.bootstrap[way].draws} times" if way in saved.bootstrap else "many times",
@@ -45,9 +45,9 @@ def page(saved: UncertaintyFile, folder: Path) -> str:
 
 def _parameters(saved: UncertaintyFile) -> Rows:
     """The table of intervals with the meaning of each parameter."""
-    (first, *heads, _), found = intervals_table(saved)
+    (first, *heads, _), intervals = intervals_table(saved)
     rows = [
-        (label, "; ".join(filter(None, (one.meaning, flag))), *row)
-        for (label, *row, flag), one in zip(found, saved.parameters.values(), strict=True)
+        (label, "; ".join(filter(None, (parameter.meaning, flag))), *row)
+        for (label, *row, flag), parameter in zip(intervals, saved.parameters.values(), strict=True)
     ]
     return (first, "Meaning", *heads), rows

@@ -86,9 +86,10 @@ def notes_by_kind(notes: Sequence[str], about: Sequence[NoteKind]) -> list[tuple
     if len(about) != len(notes):
         return [("", list(notes))] if notes else []
     groups = [
-        (title, [note for note, one in zip(notes, about, strict=True) if one == kind]) for kind, title in NOTE_TITLES.items()
+        (title, [note for note, note_kind in zip(notes, about, strict=True) if note_kind == kind])
+        for kind, title in NOTE_TITLES.items()
     ]
-    return [(title, list(dict.fromkeys(some))) for title, some in groups if some]
+    return [(title, list(dict.fromkeys(group))) for title, group in groups if group]
 
 
 def written_on(path: Path) -> str:
@@ -97,7 +98,7 @@ def written_on(path: Path) -> str:
 
 
 def inputs_table(version: str, **inputs: str | None) -> Rows:
-    """What a result was made from, and the versions that made it and its page.
+    """Inputs of a result, and the versions that made it and its page.
 
     Args:
         version: Version of jaxhydro that wrote the result.
@@ -113,15 +114,22 @@ def _in_words(day: date) -> str:
 
 
 def images(stated: Iterable[Figure], folder: Path) -> dict[str, Image]:
-    """Figures by name in their stated order, then others that are there; only PNG files of the folder itself are taken."""
-    there = {path.name: path for path in sorted((folder / FIGURES_FOLDER).glob("*.png")) if path.is_file()}
+    """Figures by name in their stated order, then other figures in the folder.
+
+    Only PNG files of the folder itself are taken.
+
+    Args:
+        stated: Figures with their captions.
+        folder: The result folder.
+    """
+    files = {path.name: path for path in sorted((folder / FIGURES_FOLDER).glob("*.png")) if path.is_file()}
     captions = {Path(figure.file).name: figure.caption for figure in stated}
-    names = [name for name in captions if name in there] + [name for name in there if name not in captions]
-    return embedded({there[name]: captions.get(name) or name for name in names})
+    names = [name for name in captions if name in files] + [name for name in files if name not in captions]
+    return embedded({files[name]: captions.get(name) or name for name in names})
 
 
 def embedded(captions: dict[Path, str]) -> dict[str, Image]:
-    """PNG files with their captions as images of a page, by name; what is no PNG file is left out."""
+    """PNG files with their captions as images of a page, by name; other files are left out."""
     contents = {path: path.read_bytes() for path in captions if path.is_file()}
     return {
         path.name: Image(captions[path], base64.b64encode(content).decode("ascii"))

@@ -26,24 +26,31 @@ PAGES: dict[str, tuple[type[Any], Callable[[Any, Path], str]]] = {  # model and 
 
 
 def write_report(folder: str | PathLike[str]) -> Path:
-    """Write report.html into a result folder and give its path. Raises InputError where there are no results in it."""
+    """Write report.html into a result folder.
+
+    Returns:
+        Path of the page.
+
+    Raises:
+        InputError: The folder has no results.
+    """
     folder = Path(folder)
     try:
-        there = [name for name in PAGES if folder.is_dir() and (folder / name).is_file()]
+        present = [name for name in PAGES if folder.is_dir() and (folder / name).is_file()]
     except (OSError, ValueError):
-        there = []
-    if not there and (folder / RESULTS).is_dir():
-        found = "one that was stopped: the same `jaxhydro sweep` goes on"
-        raise InputError(str(folder), [Problem("", "a sweep that is done", found)])
-    if not there and all((folder / name).is_file() for name in (simulation_page.MOTIONS, MOTION_FILE)):
+        present = []
+    if not present and (folder / RESULTS).is_dir():
+        actual = "one that was stopped: the same `jaxhydro sweep` goes on"
+        raise InputError(str(folder), [Problem("", "a sweep that is done", actual)])
+    if not present and all((folder / name).is_file() for name in (simulation_page.MOTIONS, MOTION_FILE)):
         write_whole(folder / REPORT_FILE, simulation_page.page(folder))
         return folder / REPORT_FILE
-    if not there:
-        found = "a file" if folder.is_file() else "no such folder"
+    if not present:
+        actual = "a file" if folder.is_file() else "no such folder"
         files = ", ".join((RESULT_FILE, DIAGNOSIS_FILE, UNCERTAINTY_FILE, COMPARISON_FILE, simulation_page.MOTIONS))
-        found = f"no {files} or {SWEEP}" if folder.is_dir() else found
+        actual = f"no {files} or {SWEEP}" if folder.is_dir() else actual
         expected = "a folder that `jaxhydro simulate`, `calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
-        raise InputError(str(folder), [Problem("", expected, found)])
-    model, page = PAGES[there[0]]
-    write_whole(folder / REPORT_FILE, page(read_as(model, folder / there[0]), folder))
+        raise InputError(str(folder), [Problem("", expected, actual)])
+    model, page = PAGES[present[0]]
+    write_whole(folder / REPORT_FILE, page(read_as(model, folder / present[0]), folder))
     return folder / REPORT_FILE
