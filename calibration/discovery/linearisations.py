@@ -79,9 +79,9 @@ class Point:
     x: np.ndarray
     own: np.ndarray
 
-    def moved(self, directions: np.ndarray, step: np.ndarray, own: np.ndarray) -> "Point":
+    def moved(self, directions: np.ndarray, step: np.ndarray, own_step: np.ndarray) -> "Point":
         """The point after a step along directions, and of the decays' own unknowns."""
-        return Point(self.x + step @ directions, self.own + own)
+        return Point(self.x + step @ directions, self.own + own_step)
 
 
 @dataclass(frozen=True)
@@ -108,8 +108,8 @@ class Linearisation:
 
     def restricted_to(self, active: Sequence[int]) -> "Linearisation":
         """Some of the directions only."""
-        at = [self.active.index(i) for i in active]
-        return replace(self, active=tuple(active), slopes=self.slopes[:, at])
+        columns = [self.active.index(i) for i in active]
+        return replace(self, active=tuple(active), slopes=self.slopes[:, columns])
 
 
 @dataclass(frozen=True)
