@@ -138,7 +138,7 @@ def set_up_study(
     taken = set(baseline.values) - (requested_table_labels(baseline) - set(labels)) - zero_terms(baseline, labels)
     candidates = [candidate for candidate in candidates if not set(candidate.amplitudes) & taken]
     scaled = {label: parameter for label, parameter in scaled.items() if label not in taken}
-    units = {label: one for label, one in units.items() if label not in taken}
+    units = {label: unit for label, unit in units.items() if label not in taken}
     base_space = space_of(campaign, labels, baseline)
     nuisances: dict[str, tuple[dict[str, float], float]] = {}  # name -> parameters and how they go together, deviation
     free: list[FreeParameter] = [*base_space.free]
