@@ -134,7 +134,7 @@ def far_step(
         own_step: Step of the decays' own unknowns (r, o).
 
     Returns:
-        The linearisation there, its slopes updated; the one given where no part gains.
+        The linearisation after the step, its slopes updated; the argument `look` where no part gains enough.
     """
     now = cost_of(study, look, look.residual, look.place, used, prior)
     for part in STEP_PARTS:

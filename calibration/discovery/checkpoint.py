@@ -106,7 +106,7 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
 
     Args:
         path: The file.
-        search: The search; it is changed to what the checkpoint has.
+        search: The search; it is set to the state in the checkpoint.
         tell: Called with the reason in words where a checkpoint cannot be used.
 
     Returns:
@@ -150,7 +150,7 @@ def fingerprint(search: "Search") -> str:
 
 
 def _other(before: Any) -> str:
-    """What differs between the checkpoint's program and this one, in words."""
+    """Difference between the checkpoint's program and this one, in words."""
     now = fingerprints.computed_with()
     before = before if isinstance(before, Mapping) else {}
     changed = [name for name, value in now.items() if before.get(name) != value]

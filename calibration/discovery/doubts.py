@@ -33,7 +33,7 @@ MAX_COEFFICIENT_RATIO = 3.0  # of a coefficient to its declared value, or the in
 
 
 def doubts_of(search: Search, state: FitState, fitted: Calibration, more: Sequence[Finding]) -> list[str]:
-    """Notes on what is doubtful in the final fit.
+    """Notes on doubts about the final fit.
 
     Args:
         search: The search.
@@ -93,7 +93,7 @@ def outdone_effects(worth: Mapping[str, float], tried: Mapping[str, Verdict]) ->
 
     Args:
         worth: Gain of every effect in fitted and held-out tests, by name.
-        tried: Verdicts of removed effects, by name; of earlier searches those of the last round, too.
+        tried: Verdicts of removed effects, by name. From earlier searches, the last round's verdicts are included.
 
     Returns:
         The rejected effect by the name of the effect that it outdoes.
@@ -157,7 +157,7 @@ def moving_release_notes(search: Search, state: FitState) -> list[str]:
 
 
 def far_coefficient_notes(search: Search, fitted: Calibration) -> list[str]:
-    """Note on coefficients that end far from their declared values."""
+    """Note on coefficients that end far from their values in the baseline."""
     estimates = [fitted.parameters[label] for label in search.setup.base if label in fitted.parameters]
     far = [
         estimate

@@ -67,7 +67,7 @@ class EffectFits:
         )
 
     def prior(self, chosen: Sequence[Candidate]) -> Prior:
-        """Priors with some effects in the model, whose amplitudes have those of plausible sizes."""
+        """Priors with some effects in the model; their amplitudes have the priors of plausible sizes."""
         mean, width = self.setup.prior.mean.copy(), self.setup.prior.width.copy()
         for candidate in chosen:
             for label, i in zip(candidate.amplitudes, self.study.index(candidate.amplitudes), strict=True):

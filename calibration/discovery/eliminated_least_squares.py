@@ -92,7 +92,7 @@ class NormalEquations(NamedTuple):
         """Matrix and gradient of the parameters with the fitted decays' own unknowns eliminated.
 
         Returns:
-            Matrix (q, q), gradient (q,), and by decay what recovers its own unknowns (r, o, q + 1).
+            Matrix (q, q), gradient (q,), and by decay the matrix that recovers its own unknowns (r, o, q + 1).
         """
         size = np.diagonal(self.matrix.own, axis1=1, axis2=2)
         ridge = damping * size + OWN_ROUNDING * size.mean(axis=1, keepdims=True) if size.size else size
@@ -153,8 +153,8 @@ def linear_residual(study: Study, look: Linearisation, step: np.ndarray, own_ste
 def projected_products(study: Study, look: Linearisation, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Products of columns with the residual, after projection.
 
-    What the directions of the linearisation and the decays' own unknowns can explain is projected out. Rows are weighed as in a
-    fit.
+    The part that the directions of the linearisation and the decays' own unknowns can explain is projected out. Rows are
+    weighed as in a fit.
 
     Args:
         study: The study.

@@ -1,7 +1,7 @@
 """Expected size of residuals in waves where an unknown force acts: the weights of wave tests.
 
 A missing force F leaves a residual H F, which is largest at resonance. With equal weights, least squares reduces it by damping
-slow motion away. Weighed by what an unknown force leaves, a resonance counts as the few frequencies that it is.
+slow motion away. Weighed by the residual of an unknown force, a resonance counts as the few frequencies that it is.
 
     P_i = sum over j of |H_ij|^2 S_j + floor_i^2,    H = (-omega^2 + i omega C + K)^-1
 

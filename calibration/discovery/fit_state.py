@@ -1,4 +1,4 @@
-"""A fit with some effects in the model, and what it leaves of every motion."""
+"""A fit with some effects in the model, and its residual in every motion."""
 
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -69,8 +69,8 @@ def relative_errors(tests: Sequence[TestFit]) -> dict[tuple[bool, str], float]:
 def motion_slopes(search: Search, state: FitState) -> dict[tuple[str, str], np.ndarray]:
     """Slopes of the motions in time along a fit's directions (t, q), by test and motion.
 
-    A decay's own initial position, rate and offset are fitted to it whatever the parameters are. Its slopes are what that
-    leaves.
+    A decay's own initial position, rate and offset are fitted to it whatever the parameters are. Its slopes are the remainder
+    after that fit.
     """
     study = search.study
     parts = study.time_slopes(state.look.place, state.look.active)

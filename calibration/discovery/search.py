@@ -1,4 +1,4 @@
-"""Search for missing effects: what it has found so far, the baseline's fit, mass properties."""
+"""Search for missing effects: evidence so far, fit of the baseline, mass properties."""
 
 import math
 from typing import NamedTuple

@@ -226,7 +226,7 @@ def set_up_study(
 
 
 def zero_terms(baseline: Model, labels: Sequence[str]) -> set[str]:
-    """Labels of terms of the equation of motion that are declared zero and not fitted."""
+    """Labels of terms of the equation of motion that are zero in the baseline and not fitted."""
     values = {label: float(value) for label, value in baseline.values.items() if label.startswith(TERMS)}
     return {label for label, value in values.items() if value == 0} - set(labels)
 

@@ -76,7 +76,7 @@ class CatalogueBuilder:
 
     @property
     def time(self) -> float:
-        """Times, and velocities, over those of a platform of 20 000 t."""
+        """Ratio of times, and of velocities, to a platform of 20 000 t."""
         return math.sqrt(self.length)
 
     def add_linear(self, label: str, scale: float, neutral: float = 0.0) -> str:

@@ -40,7 +40,7 @@ def oscillator_period_finder(dof: str, shortest: float, longest: float) -> Shape
     """A search for the likeliest periods of `HiddenOscillator` in a motion, between two periods (s).
 
     In a linear hull, slopes scale with the oscillator's response. So one linearisation at the shortest period gives the gain at
-    all periods. What the fitted directions can explain is projected out; a refit decides.
+    all periods. The part of it that the fitted directions can explain is projected out. A refit decides.
     """
 
     def periods_to_try(study: "Study", look: "Linearisation", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:

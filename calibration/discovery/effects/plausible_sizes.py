@@ -107,14 +107,14 @@ def _reach(case: Case, candidate: Candidate, label: str, parameter: Parameter) -
 
 
 def _closeness(key: str) -> tuple[bool, int, bool]:
-    """Order in which keys of `plausible` are read: the one that is closest to a label comes last."""
+    """Order in which keys of `plausible` are read: the closest to a label comes last."""
     return key not in STATED_SIZES, key.count("."), "*" not in key
 
 
 def _stated(
     key: str, value: str | float, parameters: Mapping[str, Parameter], reaches: Mapping[str, Reach]
 ) -> dict[str, PlausibleSize] | Problem:
-    """Ranges that one key states, or what is wrong with it."""
+    """Ranges that one key states, or the problem with it."""
     labels, where, size = [label for label in parameters if is_about(key, label)], f"plausible.{key}", read_stated_size(value)
     if not labels:
         mine = [label for label in parameters if label.split(".")[0] == key.split(".")[0]]

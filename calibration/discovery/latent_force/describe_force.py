@@ -251,7 +251,7 @@ def _size(name: str) -> str:
 
 
 def law_in_words(law: Law, unit: str) -> str:
-    """A force law and what it explains, in words."""
+    """A force law and the share that it explains, in words."""
     if not law.terms:
         return f"no law of up to three terms explains it (the best {percent(law.share)} of it in {law.checked or 'the tests'})"
     sizes = [(term, f"{number(term.coefficient, 3)} {readable_unit(term.unit)}") for term in law.terms]

@@ -1,6 +1,6 @@
 """Recovery of the latent force from the residual, by the model's equation of motion.
 
-The latent force is what would have to act on the model for it to follow every record. The residual r, measured minus simulated
+The latent force is the force that makes the model follow every record. The residual r, measured minus simulated
 and tapered at its ends, is put into the model's equation of motion. If that is linear, r = H F, and r is divided by H. If not,
 accelerations a along the recorded path and along the simulated path y are subtracted:
 

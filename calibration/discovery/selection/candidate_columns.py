@@ -203,7 +203,7 @@ class _Columns:
             self.add(candidate, self.append(secant, look.active[-1:]), far.values)
 
     def columns(self) -> CandidateColumns:
-        """The linear model of what was gathered."""
+        """The linear model of the gathered columns."""
         return CandidateColumns(
             linear_model(self.fits, self.look, np.hstack(self.slopes), self.directions),
             tuple(range(len(self.fits.base))),

@@ -26,7 +26,7 @@ def is_nearly_known(fits: EffectFits, candidate: Candidate) -> bool:
 def first_passes(
     fits: EffectFits, candidates: Sequence[Candidate], among: Sequence[ListedVariant] | None = None
 ) -> tuple[list[list[CandidateValues]], list[CandidateValues]]:
-    """First passes: those along the candidates whose further shapes are found from slopes.
+    """First passes, along the candidates whose further shapes are found from slopes.
 
     Candidates for which these passes have no room are linearised later, with the shapes that are found.
 
@@ -76,7 +76,7 @@ def jobs_of(
 def is_listed(candidate: Candidate, values: Mapping[str, float], entry: ListedVariant) -> bool:
     """Whether an entry of a list refers to a candidate at the given values of its shapes.
 
-    An entry with values outside the candidate's grid refers to all values, and so does any entry of a candidate whose further
+    An entry with values outside the candidate's grid refers to all values. So does any entry of a candidate whose further
     shapes are found from slopes.
     """
     has_other_values = entry.values not in (candidate.grid or ({},))
@@ -86,7 +86,7 @@ def is_listed(candidate: Candidate, values: Mapping[str, float], entry: ListedVa
 def packed(candidates: Sequence[CandidateValues], width: int) -> list[list[CandidateValues]]:
     """Candidates at values of their shapes in as few passes as possible, in their order.
 
-    A pass has every candidate at one of its values at most, and at most so many directions.
+    A pass has every candidate at one of its values at most, and at most `width` directions.
 
     Args:
         candidates: Candidates and values.

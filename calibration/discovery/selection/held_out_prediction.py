@@ -57,7 +57,8 @@ def supported_effects(
 ) -> tuple[Subset, dict[int, Refusal]]:
     """The effects that predicted held-out tests support, and why the others are left out.
 
-    One unsupported effect goes at a time: the one without which the tests are followed best. The others are judged anew.
+    Unsupported effects go one at a time, first the effect without which the tests are followed best. The others are then
+    assessed anew.
 
     Args:
         study: The study.

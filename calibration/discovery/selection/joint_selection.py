@@ -1,7 +1,7 @@
 """Selection of effects: subsets of candidates compared by their evidence on a linearised model.
 
 The best subsets are found best first: from every one of the few best, effects are added, removed and exchanged. The posterior
-probability of a subset is its evidence times its prior. The likelihood is tempered by what the best subset leaves above the
+probability of a subset is its evidence times its prior. The likelihood is tempered by the best subset's residual above the
 noise (coarsened posterior).
 
 Two kinds of subsets are left out:
@@ -195,7 +195,7 @@ class JointSelection:
         return subset
 
     def temper(self, best: Subset) -> None:
-        """Temper the likelihood by what a subset leaves above the noise."""
+        """Temper the likelihood by a subset's residual above the noise."""
         discrepancy = self.model.discrepancy(self.model.residual_after(best.fit))
         if discrepancy > MIN_DISCREPANCY:
             self.model, self.fitted, self.judged = self.model.tempered(discrepancy), {}, {}

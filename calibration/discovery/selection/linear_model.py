@@ -116,10 +116,10 @@ class LinearModel:
 
         Args:
             sums: The sums, of columns of which the last is the residual.
-            values: The decays' own unknowns where the residual is meant.
+            values: The decays' own unknowns at the point of the residual.
 
         Returns:
-            The sum (k, k), and by decay what gives its own unknowns: -(this @ [step, 1]) (o, k).
+            The sum (k, k), and by decay the matrix B that gives its own unknowns, -B @ [step, 1] (o, k).
         """
         whole, back = sums.whole.copy(), []
         for unknowns, (cross, inner), value in zip(self.own, sums.own, values, strict=True):
@@ -224,10 +224,10 @@ class LinearModel:
         return bool((fit.at_bound & self.ends[columns] & (np.abs(fit.step - self.neutral[columns]) > 1e-12)).any())
 
     def discrepancy(self, residual: np.ndarray) -> float:
-        """How many degrees of freedom of a residual count as one.
+        """Number of degrees of freedom of a residual that count as one.
 
-        It is the geometric mean of the residual's root mean square over the floor's, and at least 1. What a model leaves above
-        the noise is its own error, and is alike in all records. Its samples are not so many independent observations.
+        It is the geometric mean of the residual's root mean square over the floor's, and at least 1. A residual above the noise
+        is the model's own error, and is alike in all records. Its samples therefore count as fewer independent observations.
         """
         logarithm = np.log(np.maximum(self.levels(residual), 1.0))
         return math.exp(0.5 * float((self.freedom * logarithm).sum()) / max(float(self.freedom.sum()), 1.0))

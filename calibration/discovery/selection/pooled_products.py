@@ -1,7 +1,7 @@
 """Products of the columns of a linear model, pool by pool.
 
-A pool's rows share one weight. So least squares with any weights, and the mean square of every pool after any step, need the
-products of the columns in each pool only. The rows are needed once.
+A pool's rows share one weight. So the products of the columns in each pool are enough for least squares with any weights. They
+also give the mean square of every pool after any step. The rows are needed once.
 """
 
 from collections.abc import Sequence

@@ -28,7 +28,7 @@ class VerifiedSearch(JointSearch):
     """Joint search whose effects are verified by simulation."""
 
     def verify(self, baseline: FitState, state: FitState) -> FitState:
-        """Take every effect out in turn, simulate, and keep those that the records ask for.
+        """Take every effect out in turn, simulate, and keep the effects that the records support.
 
         After an effect has gone, the others that were refused are tried again. At the end all that are left are tried, from a
         fit to convergence. The final model follows no motion worse than the baseline, if an effect is the reason.
