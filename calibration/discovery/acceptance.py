@@ -52,16 +52,16 @@ class HeldOutComparison(NamedTuple):
         """
         dof = self.study.by_region(self.study.pooled)
         before, after = self.before.squares, self.after.squares
-        some = self.compared[:, None] & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
-        if not some.any():
+        selected = self.compared[:, None] & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
+        if not selected.any():
             return 0.0, self.unseen
-        ratio = np.log(np.where(some, after + 0.1 * dof, 1.0) / np.where(some, before + 0.1 * dof, 1.0))
-        weight = np.array([one.weight for one in self.study.series])
-        found = []
-        for channel in dict.fromkeys(one.channel for one in self.study.series):
-            mine = some & np.array([[one.channel == channel] for one in self.study.series])
-            found += [float(weight[m] @ r[m] / weight[m].sum()) for m, r in zip(mine.T, ratio.T) if m.any()]
-        return 1 - math.exp(min(found)), True
+        ratio = np.log(np.where(selected, after + 0.1 * dof, 1.0) / np.where(selected, before + 0.1 * dof, 1.0))
+        weight = np.array([series.weight for series in self.study.series])
+        log_ratios = []
+        for channel in dict.fromkeys(series.channel for series in self.study.series):
+            mine = selected & np.array([[series.channel == channel] for series in self.study.series])
+            log_ratios += [float(weight[m] @ r[m] / weight[m].sum()) for m, r in zip(mine.T, ratio.T) if m.any()]
+        return 1 - math.exp(min(log_ratios)), True
 
     @property
     def likelihood_gain(self) -> float:
@@ -74,15 +74,15 @@ class HeldOutComparison(NamedTuple):
         In motions other than a decay's own, only the noise floor sets what matters.
         """
         study = self.study
-        samples = np.array([[one.samples] for one in study.series])
+        samples = np.array([[series.samples] for series in study.series])
         squares = study.by_region(study.dof * study.floor**2) / samples
-        noise = study.by_region(study.dof) * np.array([[one.noise**2] for one in study.series]) / samples
-        of_floor = np.array([[RELATIVE_FLOOR[one.kind]] for one in study.series])
-        decay = np.array([[one.kind == "decay"] for one in study.series])
-        spread, seen = np.array([[(one.spread, one.floor_rms)] for one in study.series]).transpose(2, 0, 1)
+        noise = study.by_region(study.dof) * np.array([[series.noise**2] for series in study.series]) / samples
+        of_floor = np.array([[RELATIVE_FLOOR[series.kind]] for series in study.series])
+        decay = np.array([[series.kind == "decay"] for series in study.series])
+        spread, floor_rms = np.array([[(series.spread, series.floor_rms)] for series in study.series]).transpose(2, 0, 1)
         motion = np.where(decay, spread, np.sqrt(np.maximum(squares - noise, 0.0)) / of_floor)
         asked = np.where(study.main[:, None], MIN_MOTION_SHARE * motion, math.inf)
-        least = np.minimum(asked, MIN_FLOOR_MULTIPLE * np.where(decay, seen, np.sqrt(squares)))
+        least = np.minimum(asked, MIN_FLOOR_MULTIPLE * np.where(decay, floor_rms, np.sqrt(squares)))
         fallen = (self.before.parts - self.after.parts)[self.compared]
         return float((fallen / np.maximum(least[self.compared], 1e-300)).max(initial=0.0))
 
@@ -115,7 +115,13 @@ class Verdict(NamedTuple):
 
 
 def assess_effect(
-    study: Study, before: FitState, after: FitState, one: Candidate, prior: Prior, count: float, grounds: HeldOutComparison
+    study: Study,
+    before: FitState,
+    after: FitState,
+    candidate: Candidate,
+    prior: Prior,
+    count: float,
+    grounds: HeldOutComparison,
 ) -> Verdict:
     """Whether an effect is accepted.
 
@@ -123,7 +129,7 @@ def assess_effect(
         study: The study.
         before: Fit without the effect.
         after: Fit with the effect.
-        one: The effect.
+        candidate: The effect.
         prior: Priors of the fit with the effect.
         count: Number of independent observations, for BIC.
         grounds: Residuals without and with the effect, in the series that decide.
@@ -131,18 +137,18 @@ def assess_effect(
     Returns:
         The verdict, with the reason where the effect is rejected.
     """
-    bic = float((before.likelihood - after.likelihood)[study.used].sum()) - len(one.labels) * math.log(count)
+    bic = float((before.likelihood - after.likelihood)[study.used].sum()) - len(candidate.labels) * math.log(count)
     held, told = grounds.error_reduction()
-    net, clear, matters = grounds.likelihood_gain, significance(study, one, after, prior), grounds.relevance()
-    values = {label: study.value(label, after.look.place.x) for label in one.positive}
-    wrong = [label for label, value in values.items() if value < 0 and is_significant(study, label, one, after, prior)]
+    net, clear, matters = grounds.likelihood_gain, significance(study, candidate, after, prior), grounds.relevance()
+    values = {label: study.value(label, after.look.place.x) for label in candidate.positive}
+    wrong = [label for label, value in values.items() if value < 0 and is_significant(study, label, candidate, after, prior)]
     where = ComparedData.HELD_OUT if grounds.study is study else ComparedData.BLOCKS
     where = where if grounds.unseen else ComparedData.FITTED
     impossible = Refusal(RefusalKind.IMPOSSIBLE_VALUE, (float(values[wrong[0]]),), wrong[0]) if wrong else None
     refused = impossible or reason_to_reject(bic, held if told else None, net, clear, matters, where)
     # that it hardly matters is said where nothing else speaks against it
     if refused is None or refused.kind == RefusalKind.NEGLIGIBLE:
-        refused = worsened_motion(study, one.dof, before.left, after.left) or refused
+        refused = worsened_motion(study, candidate.dof, before.left, after.left) or refused
     return Verdict(bic, held, grounds.unseen, net, clear, matters, refused)
 
 
@@ -187,10 +193,10 @@ def worsened_motion(study: Study, dof: str | None, before: ResidualSummary, afte
         before: Residual without the effect.
         after: Residual with the effect.
     """
-    mine = study.main & np.array([one.channel == (dof or one.channel) and one.spread > 0 for one in study.series])
-    spread = np.array([one.spread if one.spread > 0 else 1.0 for one in study.series])
-    for some, where in ((mine, ComparedData.ALL), (mine & ~study.used, ComparedData.HELD_OUT)):
-        was, now = (float((left.error / spread)[some].sum()) for left in (before, after))
+    mine = study.main & np.array([series.channel == (dof or series.channel) and series.spread > 0 for series in study.series])
+    spread = np.array([series.spread if series.spread > 0 else 1.0 for series in study.series])
+    for selected, where in ((mine, ComparedData.ALL), (mine & ~study.used, ComparedData.HELD_OUT)):
+        was, now = (float((summary.error / spread)[selected].sum()) for summary in (before, after))
         if now > was + MIN_MOTION_SHARE:
             return Refusal(RefusalKind.WORSE_MOTION, (was, now), dof or "", where)
     return None
@@ -206,28 +212,28 @@ def worsening(study: Study, before: ResidualSummary, after: ResidualSummary) -> 
         before: Residual of the first fit.
         after: Residual of the second fit.
     """
-    least = np.array([max(MIN_MOTION_SHARE * one.spread, one.floor_rms) for one in study.series])
+    least = np.array([max(MIN_MOTION_SHARE * series.spread, series.floor_rms) for series in study.series])
     return np.where(study.main, (after.error - before.error) / least, 0.0)
 
 
-def is_significant(study: Study, label: str, one: Candidate, state: FitState, prior: Prior) -> bool:
+def is_significant(study: Study, label: str, candidate: Candidate, state: FitState, prior: Prior) -> bool:
     """Whether a parameter differs from zero beyond doubt.
 
     The only amplitude of an effect always does; one of several has to be two standard deviations away.
     """
     i = study.names.index(label)
     variance = predict_gain(study, state.look, prior).covariance[state.look.active.index(i), state.look.active.index(i)]
-    return len(one.amplitudes) == 1 or abs(float(study.steps(state.look.place.x)[i])) > 2 * math.sqrt(variance)
+    return len(candidate.amplitudes) == 1 or abs(float(study.steps(state.look.place.x)[i])) > 2 * math.sqrt(variance)
 
 
-def significance(study: Study, one: Candidate, state: FitState, prior: Prior) -> float:
+def significance(study: Study, candidate: Candidate, state: FitState, prior: Prior) -> float:
     """An effect's amplitudes over their standard deviations.
 
     Several amplitudes together are expressed as one normal variable (Wald statistic less the extra degrees of freedom).
     """
     look = state.look
-    columns = [look.active.index(i) for i in study.index(one.amplitudes)]
+    columns = [look.active.index(i) for i in study.index(candidate.amplitudes)]
     covariance = predict_gain(study, look, prior).covariance[np.ix_(columns, columns)]
-    steps = study.steps(look.place.x)[study.index(one.amplitudes)]
+    steps = study.steps(look.place.x)[study.index(candidate.amplitudes)]
     wald = float(steps @ pseudo_inverse(covariance) @ steps)
     return math.sqrt(max(wald - len(columns) + 1, 0.0))

@@ -39,35 +39,35 @@ class FitOutcome(NamedTuple):
 
 
 def broyden_update(
-    study: Study, look: Linearisation, place: Point, residual: np.ndarray, step: np.ndarray, own: np.ndarray
+    study: Study, look: Linearisation, point: Point, residual: np.ndarray, step: np.ndarray, own_step: np.ndarray
 ) -> Linearisation:
     """The linearisation after a step, its slopes corrected to agree with the step (Broyden's update).
 
     Args:
         study: The study.
         look: Linearisation before the step.
-        place: The point after the step.
+        point: The point after the step.
         residual: Residual there, in rows (n,).
         step: Step along the active directions (q,).
-        own: Step of the decays' own unknowns (r, o).
+        own_step: Step of the decays' own unknowns (r, o).
 
     References:
         Broyden 1965, Mathematics of Computation 19, 577-593.
     """
     weight = row_weights(study, look.residual)
-    missed = residual - linear_residual(study, look, step, own)
+    missed = residual - linear_residual(study, look, step, own_step)
     slopes, mine = look.slopes.copy(), look.own.copy()
     size = (weight[:, None] * look.slopes**2).sum(axis=0) * step
     decays = study.spans[-1].stop if study.spans else 0
     if size @ step > 0:
         slopes[decays:] += np.outer(missed[decays:], size / (size @ step))
-    for span, moved in zip(study.spans, own):
+    for span, moved in zip(study.spans, own_step):
         inner = (weight[span, None] * look.own[span] ** 2).sum(axis=0) * moved
         total = size @ step + inner @ moved
         if total > 0:
             slopes[span] += np.outer(missed[span], size / total)
             mine[span] += np.outer(missed[span], inner / total)
-    return Linearisation(place, look.active, residual, slopes, mine)
+    return Linearisation(point, look.active, residual, slopes, mine)
 
 
 def bounded_step(
@@ -80,47 +80,50 @@ def bounded_step(
     Returns:
         Step along the active directions (q,), and of the decays' own unknowns (r, o).
     """
-    step, own = damped_step(study, look, used, prior, damping)
+    step, own_step = damped_step(study, look, used, prior, damping)
     low, high = (study.limits[list(look.active)] - study.steps(look.place.x)[list(look.active), None]).T
-    kept = np.clip(step, low, high)
-    if (held := kept != step).any() and not held.all():
+    clipped = np.clip(step, low, high)
+    if (held := clipped != step).any() and not held.all():
         rest = look.restricted_to([i for i, out in zip(look.active, held) if not out])
-        rest = replace(rest, residual=look.residual + look.slopes[:, held] @ kept[held])
-        kept[~held], own = damped_step(study, rest, used, prior, damping)
-    return np.clip(kept, low, high), own
+        rest = replace(rest, residual=look.residual + look.slopes[:, held] @ clipped[held])
+        clipped[~held], own_step = damped_step(study, rest, used, prior, damping)
+    return np.clip(clipped, low, high), own_step
 
 
 class StepTrial(NamedTuple):
     """Simulation after a step.
 
     Attributes:
-        place: The point after the step.
+        point: The point after the step.
         residual: Residual there, in rows (n,).
         cost: Cost there; infinite where a simulation diverges.
         predicted: Cost that the linearisation predicts.
     """
 
-    place: Point
+    point: Point
     residual: np.ndarray
     cost: float
     predicted: float
 
 
-def try_step(study: Study, look: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own: np.ndarray) -> StepTrial:
+def try_step(
+    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own_step: np.ndarray
+) -> StepTrial:
     """Simulate after a step along the active directions (q,) and of the decays' own unknowns (r, o)."""
-    place = look.place.moved(study.directions[list(look.active)], step, own)
-    residual = study.residual(place)
-    cost = np.inf if has_diverged(residual) else cost_of(study, look, residual, place, used, prior)
-    predicted = cost_of(study, look, linear_residual(study, look, step, own), place, used, prior)
-    return StepTrial(place, residual, cost, predicted)
+    point = look.place.moved(study.directions[list(look.active)], step, own_step)
+    residual = study.residual(point)
+    cost = np.inf if has_diverged(residual) else cost_of(study, look, residual, point, used, prior)
+    predicted = cost_of(study, look, linear_residual(study, look, step, own_step), point, used, prior)
+    return StepTrial(point, residual, cost, predicted)
 
 
 def far_step(
-    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own: np.ndarray
+    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own_step: np.ndarray
 ) -> Linearisation:
-    """The linearisation after a long step, or after the longest part of it that gains what slopes predict for it.
+    """The linearisation after a long step, or after the longest part of it that gains enough.
 
-    A damped step is short along every direction if one of them leads astray. This one keeps its proportions.
+    A part gains enough if it gains more than `MIN_PREDICTED_SHARE` of what the slopes predict. A damped step is short along
+    every direction if one of them leads astray. This one keeps its proportions.
 
     Args:
         study: The study.
@@ -128,17 +131,17 @@ def far_step(
         used: Which series (s,) are fitted.
         prior: Priors of the directions.
         step: Step along the active directions (q,).
-        own: Step of the decays' own unknowns (r, o).
+        own_step: Step of the decays' own unknowns (r, o).
 
     Returns:
-        The linearisation there, its slopes updated; the one given where no part gains.
+        The linearisation after the step, its slopes updated; the argument `look` where no part gains enough.
     """
     now = cost_of(study, look, look.residual, look.place, used, prior)
     for part in STEP_PARTS:
         stop_if_asked()
-        trial = try_step(study, look, used, prior, part * step, part * own)
+        trial = try_step(study, look, used, prior, part * step, part * own_step)
         if now - trial.cost > MIN_PREDICTED_SHARE * max(now - trial.predicted, 0.0):
-            return broyden_update(study, look, trial.place, trial.residual, part * step, part * own)
+            return broyden_update(study, look, trial.point, trial.residual, part * step, part * own_step)
     return look
 
 
@@ -179,27 +182,27 @@ def fit(
     now = cost_of(study, look, look.residual, look.place, used, prior)
     if has_diverged(look.residual):
         return FitOutcome(look, 0, False)
-    damping, settled, fresh, taken, left = 1e-3, False, True, 0, relinearisations
+    damping, settled, fresh, taken, renewals_left = 1e-3, False, True, 0, relinearisations
     while taken < iterations and not settled:
         stop_if_asked()
         taken += 1
-        step, own = bounded_step(study, look, used, prior, damping)
+        step, own_step = bounded_step(study, look, used, prior, damping)
         scale = min(1.0, MAX_LOG_STEP / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
-        step, own = scale * step, scale * own
-        trial = try_step(study, look, used, prior, step, own)
+        step, own_step = scale * step, scale * own_step
+        trial = try_step(study, look, used, prior, step, own_step)
         expected, gain = now - trial.predicted, now - trial.cost
         least = max(tolerance, relative_tolerance * abs(now))  # of the present cost, not of the first one
-        known, little = fresh or not left, 0 <= gain < least or expected < least
+        slopes_final, little = fresh or not renewals_left, 0 <= gain < least or expected < least
         if gain > 0:
-            look, now, fresh = broyden_update(study, look, trial.place, trial.residual, step, own), trial.cost, False
+            look, now, fresh = broyden_update(study, look, trial.point, trial.residual, step, own_step), trial.cost, False
             damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
             report(taken, now)
         if gain >= max(least, MIN_PREDICTED_SHARE * expected):
             continue
-        if known and little:
+        if slopes_final and little:
             settled = True
-        elif not known:
-            look, fresh, left, damping = study.linearise(look.place, look.active), True, left - 1, 1e-3
+        elif not slopes_final:
+            look, fresh, renewals_left, damping = study.linearise(look.place, look.active), True, renewals_left - 1, 1e-3
         elif gain <= 0:
             damping = max(damping * 8, 1e-2)
             settled = damping > 1e6

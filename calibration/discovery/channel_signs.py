@@ -28,7 +28,7 @@ MIN_MOTION_OVER_NOISE = 5.0  # of a motion that is compared
 
 
 class SignComparison(NamedTuple):
-    """Comparison of a measured motion with the model of the platform file in one test, at wave frequencies.
+    """Measured motion compared with the platform file's model in one test, at wave frequencies.
 
     Attributes:
         channel: The motion.
@@ -53,13 +53,17 @@ def reversed_channels(campaign: Campaign, search: Search) -> dict[str, Effect]:
     if not search.study.seas:
         return {}
     met = _met(campaign, search)
-    fitted = [one for one in met if one.use == "fit"]
-    told = list(dict.fromkeys(one.channel for one in fitted))
-    wrong = [name for name in told if all(one.correlation < MAX_REVERSED_CORRELATION for one in fitted if one.channel == name)]
+    fitted = [comparison for comparison in met if comparison.use == "fit"]
+    told = list(dict.fromkeys(comparison.channel for comparison in fitted))
+    wrong = [
+        name
+        for name in told
+        if all(comparison.correlation < MAX_REVERSED_CORRELATION for comparison in fitted if comparison.channel == name)
+    ]
     if wrong == told and len(told) > 1:
         return {WAVE: _effect(WAVE, met, ())}
     alike = (f"sensor_sign ({WAVE})",) if wrong == told else ()
-    return {name: _effect(name, [one for one in met if one.channel == name], alike) for name in wrong}
+    return {name: _effect(name, [comparison for comparison in met if comparison.channel == name], alike) for name in wrong}
 
 
 def with_signs_reversed(campaign: Campaign, channels: Sequence[str]) -> Campaign:
@@ -67,25 +71,25 @@ def with_signs_reversed(campaign: Campaign, channels: Sequence[str]) -> Campaign
     manifest = campaign.manifest.turned(channels)
     tests = {test.id: test for test in manifest.tests}
     records = []
-    for one in campaign.records:
-        values = {name: -row if name in channels else row for name, row in one.values.items()}
-        wave = -one.wave if one.wave is not None and WAVE in channels else one.wave
-        records.append(replace(one, values=values, wave=wave, test=tests[one.id]))
+    for record in campaign.records:
+        values = {name: -row if name in channels else row for name, row in record.values.items()}
+        wave = -record.wave if record.wave is not None and WAVE in channels else record.wave
+        records.append(replace(record, values=values, wave=wave, test=tests[record.id]))
     return replace(campaign, manifest=manifest, records=tuple(records))
 
 
 def reversal_note(channels: Sequence[str]) -> str:
     """Note on reversed channels and how to correct the campaign file."""
     are, signs = ("is", "its sign") if len(channels) == 1 else ("are", "their signs")
-    other = " It is as if the waves came from the other side." if {"surge", "pitch"} <= set(channels) else ""
+    hint = " It is as if the waves came from the other side." if {"surge", "pitch"} <= set(channels) else ""
     return (
-        f"{listed(list(channels))} {are} recorded with the other sign, and {are} turned round for all that follows.{other} "
+        f"{listed(list(channels))} {are} recorded with the other sign, and {are} turned round for all that follows.{hint} "
         f"Mend {signs} in campaign.yaml (sign: -1, or 1 where it is -1)"
     )
 
 
 def _met(campaign: Campaign, search: Search) -> list[SignComparison]:
-    found = []
+    comparisons = []
     for test in test_fits_at(campaign, search, search.start):
         wave = campaign.record(test.id).wave
         if test.kind not in IN_WAVES or wave is None:
@@ -95,20 +99,24 @@ def _met(campaign: Campaign, search: Search) -> list[SignComparison]:
         frequency = np.fft.rfftfreq(len(test.time), step)
         inside = (frequency >= low) & (frequency < high)
         for series in test.series:
-            there, model = (np.fft.rfft(taper * (x - x.mean()))[inside] for x in (series.measured, series.simulated))
-            own, its = (float((np.abs(x) ** 2).sum()) for x in (there, model))
+            measured, model = (np.fft.rfft(taper * (x - x.mean()))[inside] for x in (series.measured, series.simulated))
+            measured_energy, model_energy = (float((np.abs(x) ** 2).sum()) for x in (measured, model))
             noise = series.noise**2 * float((taper**2).sum()) * inside.sum()
-            if series.scored and min(own, its) > MIN_MOTION_OVER_NOISE**2 * noise:
-                both = float((np.conj(model) * there).sum().real)
-                error, other = own + its - 2 * both, own + its + 2 * both
-                found.append(SignComparison(series.channel, test.use, both / float(np.sqrt(own * its)), error, other))
-    return found
+            if series.scored and min(measured_energy, model_energy) > MIN_MOTION_OVER_NOISE**2 * noise:
+                both = float((np.conj(model) * measured).sum().real)
+                error, reversed_error = measured_energy + model_energy - 2 * both, measured_energy + model_energy + 2 * both
+                comparisons.append(
+                    SignComparison(
+                        series.channel, test.use, both / float(np.sqrt(measured_energy * model_energy)), error, reversed_error
+                    )
+                )
+    return comparisons
 
 
 def _effect(channel: str, met: Sequence[SignComparison], alike: tuple[str, ...]) -> Effect:
     def gone(use: str) -> float:
         """Share of the squared error, motion by motion alike."""
-        shares = [1 - one.reversed_error / one.error for one in met if one.use == use]
+        shares = [1 - comparison.reversed_error / comparison.error for comparison in met if comparison.use == use]
         return float(np.mean(shares)) if shares else float("nan")
 
     label, meaning = f"sensor_sign.{channel}", f"sign of the recorded {channel}, by that which is declared"

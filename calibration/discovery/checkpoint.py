@@ -60,8 +60,8 @@ class Checkpoint:
     def every_state(self) -> Iterator[FitState]:
         """All fits in the checkpoint."""
         yield from self.states
-        for one in self.found.values():
-            yield from (one.before, one.after)
+        for effect in self.found.values():
+            yield from (effect.before, effect.after)
 
 
 def save_checkpoint(path: Path, search: "Search", states: list[FitState], seconds: float) -> None:
@@ -96,7 +96,7 @@ def save_checkpoint(path: Path, search: "Search", states: list[FitState], second
     }
     content = io.BytesIO()
     text = np.frombuffer(json.dumps(about).encode(), np.uint8)
-    np.savez(content, allow_pickle=False, **{DOCUMENT_KEY: text}, **{str(i): one for i, one in enumerate(arrays)})
+    np.savez(content, allow_pickle=False, **{DOCUMENT_KEY: text}, **{str(i): array for i, array in enumerate(arrays)})
     with staged(path.parent) as temporary:
         (temporary / path.name).write_bytes(content.getvalue())
 
@@ -106,7 +106,7 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
 
     Args:
         path: The file.
-        search: The search; it is changed to what the checkpoint has.
+        search: The search; it is set to the state in the checkpoint.
         tell: Called with the reason in words where a checkpoint cannot be used.
 
     Returns:
@@ -119,14 +119,16 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
                 tell(f"{path}: {_other(about['computed_with'])}; the diagnosis starts anew")
                 return []
             arrays = {name: file[name] for name in file.files if name != DOCUMENT_KEY}
-        candidates = {one.name: one for one in search.setup.candidates}
+        candidates = {candidate.name: candidate for candidate in search.setup.candidates}
         reached: Checkpoint = _rebuilt(Checkpoint, about["reached"], arrays, candidates)
         _check(reached, search)
     except FileNotFoundError:
         return []
     except Exception as error:  # each way to damage a file has its own
-        said = " ".join(str(error).split())[:100]
-        tell(f"{path}: what an earlier run reached cannot be read ({type(error).__name__}: {said}); the diagnosis starts anew")
+        message = " ".join(str(error).split())[:100]
+        tell(
+            f"{path}: what an earlier run reached cannot be read ({type(error).__name__}: {message}); the diagnosis starts anew"
+        )
         return []
     search.study = replace(search.study, expected=reached.expected)
     search.found, search.scores, search.rejected = reached.found, list(reached.scores), reached.rejected
@@ -142,13 +144,13 @@ def fingerprint(search: "Search") -> str:
     manifest, folder = campaign.manifest, campaign.folder
     files = [folder / test.file for test in manifest.tests]
     files += [Path(platform_source(manifest, folder)), *map(Path, campaign.platform.files().values())]
-    model = (campaign.platform, campaign.model_override, setup.declared)
+    model = (campaign.platform, campaign.model_override, setup.baseline)
     study = (setup.study.names, setup.study.options, setup.motions, setup.candidates)
     return fingerprints.fingerprint(manifest, campaign.records, files, model, study)
 
 
 def _other(before: Any) -> str:
-    """What differs between the checkpoint's program and this one, in words."""
+    """Difference between the checkpoint's program and this one, in words."""
     now = fingerprints.computed_with()
     before = before if isinstance(before, Mapping) else {}
     changed = [name for name, value in now.items() if before.get(name) != value]
@@ -165,23 +167,23 @@ def _check(reached: Checkpoint, search: "Search") -> None:
     asked: list[tuple[np.ndarray, tuple[int, ...]]] = [(reached.begun, (free,))]
     asked += [] if reached.expected is None else [(reached.expected, (rows,))]
     for state in reached.every_state():
-        look, left = state.look, state.left
+        look, summary = state.look, state.left
         if not all(0 <= i < len(study.names) for i in look.active):
             raise ValueError("a direction that there is none of")
         asked += [(look.residual, (rows,)), (state.residual, (rows,)), (look.slopes, (rows, len(look.active)))]
         asked += [(look.place.x, (free,)), (look.place.own, study.own_width.shape)]
         asked += [(look.own, (study.spans[-1].stop if study.spans else 0, study.own_width.shape[1]))]
-        asked += [(state.likelihood, (series,)), (left.likelihood, (series,))]
-        asked += [(one, (series, 3)) for one in (left.squares, left.parts)]
-    for one, shape in asked:
-        if one.shape != shape or one.dtype != float:
-            raise ValueError(f"an array of {one.dtype} {one.shape}, not of floats {shape}")
+        asked += [(state.likelihood, (series,)), (summary.likelihood, (series,))]
+        asked += [(values, (series, 3)) for values in (summary.squares, summary.parts)]
+    for array, shape in asked:
+        if array.shape != shape or array.dtype != float:
+            raise ValueError(f"an array of {array.dtype} {array.shape}, not of floats {shape}")
 
 
 def _parts(kind: Any) -> tuple[str, ...] | None:
     """Field names of a dataclass or named tuple; None for other types."""
     if is_dataclass(kind):
-        return tuple(one.name for one in fields(kind))
+        return tuple(field.name for field in fields(kind))
     return getattr(kind, "_fields", None)
 
 
@@ -190,16 +192,16 @@ def _packed(value: Any, arrays: list[np.ndarray]) -> Any:
     if isinstance(value, Candidate):
         return value.name
     if isinstance(value, np.ndarray):
-        number = next((i for i, one in enumerate(arrays) if one is value), len(arrays))
+        number = next((i for i, array in enumerate(arrays) if array is value), len(arrays))
         if number == len(arrays):
             arrays.append(value)
         return number
     if (names := _parts(type(value))) is not None:
         return {name: _packed(getattr(value, name), arrays) for name in names}
     if isinstance(value, Mapping):
-        return {name: _packed(one, arrays) for name, one in value.items()}
+        return {name: _packed(item, arrays) for name, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_packed(one, arrays) for one in value]
+        return [_packed(item, arrays) for item in value]
     return value.item() if isinstance(value, np.generic) else value
 
 
@@ -211,7 +213,7 @@ def _rebuilt(kind: Any, value: Any, arrays: Mapping[str, np.ndarray], candidates
 
     origin, args = get_origin(kind), get_args(kind)
     if origin in (Union, types.UnionType):  # all are a kind or None
-        return None if value is None else inner(next(one for one in args if one is not type(None)), value)
+        return None if value is None else inner(next(arg for arg in args if arg is not type(None)), value)
     if kind is Candidate:
         return candidates[value]
     if kind is np.ndarray:
@@ -224,9 +226,9 @@ def _rebuilt(kind: Any, value: Any, arrays: Mapping[str, np.ndarray], candidates
     if isinstance(kind, type) and issubclass(kind, Enum):
         return kind(value)
     if origin is tuple and isinstance(value, list):
-        return tuple(inner(args[0], one) for one in value)
+        return tuple(inner(args[0], item) for item in value)
     if origin is dict and isinstance(value, dict):
-        return {name: inner(args[1], one) for name, one in value.items()}
+        return {name: inner(args[1], item) for name, item in value.items()}
     if kind is float and type(value) in (int, float):
         return float(value)
     if type(value) is not kind:

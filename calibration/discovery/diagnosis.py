@@ -180,7 +180,9 @@ class Diagnosis:
         return diagnosis_html(self)
 
     def to_xarray(self) -> "xr.Dataset":
-        """Measured and simulated motions of all tests (m, deg), without and with the effects, as in simulated.nc.
+        """Measured motions of all tests (m, deg), and simulated ones without and with the effects.
+
+        The data are those of simulated.nc.
 
         Returns:
             Variables `measured`, `simulated` (with the effects), `before` (without) by test, channel and time; NaN where there

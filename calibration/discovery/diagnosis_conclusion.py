@@ -53,18 +53,18 @@ def conclude(
     baseline = calibration_of(campaign, search, before, None)
     augmented = calibration_of(campaign, search, after, baseline)
     at_end = {
-        one.name: IMPLAUSIBLE_SIZE
-        for one in after.chosen
-        if any(size.at_end for size in plausible_ranges(search, one, after).values())
+        candidate.name: IMPLAUSIBLE_SIZE
+        for candidate in after.chosen
+        if any(size.at_end for size in plausible_ranges(search, candidate, after).values())
     }
     doubted = at_end | doubted_effects(search, after, baseline, augmented)
-    effects = (*first, *(accepted_effect(search, one, after, doubted.get(one.name)) for one in after.chosen))
+    effects = (*first, *(accepted_effect(search, candidate, after, doubted.get(candidate.name)) for candidate in after.chosen))
     share, words = signature(search, before, after)
-    left = anatomy(search, after)
-    more = unexplained_motions(search, left)
-    sure = [one for one in effects if one.in_doubt is None]
+    residuals = anatomy(search, after)
+    more = unexplained_motions(search, residuals)
+    sure = [effect for effect in effects if effect.in_doubt is None]
     verdict = Outcome.FOUND if sure else (Outcome.UNEXPLAINED if effects or more else Outcome.NOTHING_MISSING)
-    lost = records_not_followed([test for test in augmented.tests if test.kind == "decay"], search.setup.declared)
+    lost = records_not_followed([test for test in augmented.tests if test.kind == "decay"], search.setup.baseline)
     latent = latent_of(search, augmented) if verdict == Outcome.UNEXPLAINED else ()
     return Diagnosis(
         campaign.manifest.name,
@@ -75,7 +75,7 @@ def conclude(
         tuple(search.rejected.values()),
         tuple(search.scores),
         anatomy(search, before),
-        left,
+        residuals,
         share,
         words,
         next_test(search, after, verdict),
@@ -87,74 +87,80 @@ def conclude(
     )
 
 
-def unexplained_motions(search: Search, left: Sequence[Finding]) -> list[Finding]:
+def unexplained_motions(search: Search, residuals: Sequence[Finding]) -> list[Finding]:
     """Residuals of fitted tests that exceed both noise and the usual error of a model, the largest first.
 
     Only motions that a test is about count.
     """
-    kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
-    main = {(one.test, one.channel) for one, own in zip(search.study.series, search.study.main) if own}
-    told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
-    more = [one for one in told if one.rms > 2 * one.noise and one.relative > MAX_RESIDUAL_SHARE[kinds[one.test]]]
-    return sorted(more, key=lambda one: -one.relative)
+    kinds = {series.test: "decay" if series.kind == "decay" else "waves" for series in search.study.series}
+    main = {(series.test, series.channel) for series, is_main in zip(search.study.series, search.study.main) if is_main}
+    told = [finding for finding in residuals if finding.use == "fit" and (finding.test, finding.channel) in main]
+    more = [
+        finding
+        for finding in told
+        if finding.rms > 2 * finding.noise and finding.relative > MAX_RESIDUAL_SHARE[kinds[finding.test]]
+    ]
+    return sorted(more, key=lambda finding: -finding.relative)
 
 
 def next_test(search: Search, after: FitState, verdict: Outcome) -> str:
     """The test that would tell the effects found from others; without any, that of the best rejected one."""
     if verdict == Outcome.UNEXPLAINED:
-        last = [one for one in search.scores if one.round == search.scores[-1].round]
-        best = max(last, key=lambda one: one.gain, default=None)
+        last = [score for score in search.scores if score.round == search.scores[-1].round]
+        best = max(last, key=lambda score: score.gain, default=None)
         name = None if best is None else (best.effect, best.degree_of_freedom)
-        mine = [one for one in search.setup.candidates if (one.effect, one.dof) == name]
+        mine = [candidate for candidate in search.setup.candidates if (candidate.effect, candidate.dof) == name]
         return "; ".join(
-            f"{one.telling} (of what was tried, {effect_in_words(one.name)} came nearest)" for one in mine if one.telling
+            f"{candidate.telling} (of what was tried, {effect_in_words(candidate.name)} came nearest)"
+            for candidate in mine
+            if candidate.telling
         )
-    return next((one.telling for one in after.chosen if one.telling), "")
+    return next((candidate.telling for candidate in after.chosen if candidate.telling), "")
 
 
-def accepted_effect(search: Search, one: Candidate, after: FitState, doubt: str | None) -> Effect:
+def accepted_effect(search: Search, candidate: Candidate, after: FitState, doubt: str | None) -> Effect:
     """An effect of the final model, with its evidence.
 
     Args:
         search: The search.
-        one: The effect.
+        candidate: The effect.
         after: Fit of the final model.
         doubt: Why it is in doubt (see `Effect.in_doubt`), or None.
     """
-    found, used = search.found[one.name], search.study.used
-    left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())
-    meanings = dict.fromkeys(search.study.model.about(label).meaning for label in one.amplitudes)
-    held = found.verdict.held if found.verdict.unseen else float("nan")
-    parameters = estimates_of(search, after, one.labels) | values_as_estimates(search, after, one.choices)
-    left_out = found.held_out[np.abs(found.held_out) > 0]
+    accepted, used = search.found[candidate.name], search.study.used
+    before, now = float(accepted.before.left.squares[used].sum()), float(accepted.after.left.squares[used].sum())
+    meanings = dict.fromkeys(search.study.model.about(label).meaning for label in candidate.amplitudes)
+    held = accepted.verdict.held if accepted.verdict.unseen else float("nan")
+    parameters = estimates_of(search, after, candidate.labels) | values_as_estimates(search, after, candidate.choices)
+    left_out = accepted.held_out[np.abs(accepted.held_out) > 0]
     evidence = Evidence(
-        found.score,
-        found.verdict.bic,
+        accepted.score,
+        accepted.verdict.bic,
         held,
-        found.verdict.clear,
-        found.probability,
+        accepted.verdict.clear,
+        accepted.probability,
         float(left_out.sum()) if len(left_out) else math.nan,
         float((left_out > 0).mean()) if len(left_out) else math.nan,
     )
     return Effect(
-        one.effect,
-        one.dof,
+        candidate.effect,
+        candidate.dof,
         "; ".join(meanings),
-        one.source,
+        candidate.source,
         parameters,
         evidence,
-        max(0.0, 1 - now / left) if left > 0 else 0.0,
-        found.alike,
-        one.telling or None,
+        max(0.0, 1 - now / before) if before > 0 else 0.0,
+        accepted.alike,
+        candidate.telling or None,
         doubt,
-        plausible_ranges(search, one, after),
+        plausible_ranges(search, candidate, after),
     )
 
 
-def plausible_ranges(search: Search, one: Candidate, state: FitState) -> dict[str, PlausibleRange]:
+def plausible_ranges(search: Search, candidate: Candidate, state: FitState) -> dict[str, PlausibleRange]:
     """Plausible ranges of an effect's amplitudes, and which sizes in a fit are at an end."""
     ranges = {}
-    for label in one.amplitudes:
+    for label in candidate.amplitudes:
         size, value = search.setup.plausible[label], search.study.value(label, state.look.place.x)
         null = search.study.space.free[search.study.labels.index(label)].start
         near = END_SHARE * (size.upper - size.lower)

@@ -30,9 +30,11 @@ def augmented_model(search: Search, state: FitState) -> Model:
     active = search.active(state.chosen)
     moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
     values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
-    values |= {label: search.study.value(label, state.look.place.x) for one in state.chosen for label in one.choices}
-    own = [one for one in state.chosen if one.load is not None]
-    return with_effects(with_candidates(search.setup.declared, own), values).at_values(values)
+    values |= {
+        label: search.study.value(label, state.look.place.x) for candidate in state.chosen for label in candidate.choices
+    }
+    own_candidates = [candidate for candidate in state.chosen if candidate.load is not None]
+    return with_effects(with_candidates(search.setup.baseline, own_candidates), values).at_values(values)
 
 
 def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[str, Estimate]:
@@ -69,11 +71,11 @@ def calibration_of(campaign: Campaign, search: Search, state: FitState, before: 
         state: The fit.
         before: An earlier fit whose motions are compared with, or None.
     """
-    effects = [label for one in state.chosen for label in one.labels]
+    effects = [label for candidate in state.chosen for label in candidate.labels]
     nuisances = [name for name in search.setup.nuisances if name in search.study.labels and name not in effects]
     names = [*search.setup.base, *nuisances, *effects]
-    lines = [one.label for one in search.study.space.free if one.label.startswith("mooring.")]
-    choices = [label for one in state.chosen for label in one.choices]
+    lines = [parameter.label for parameter in search.study.space.free if parameter.label.startswith("mooring.")]
+    choices = [label for candidate in state.chosen for label in candidate.choices]
     parameters = (
         estimates_of(search, state, names)
         | values_as_estimates(search, state, lines, False)
@@ -105,7 +107,7 @@ def values_as_estimates(search: Search, state: FitState, labels: Sequence[str], 
         search: The search.
         state: The fit.
         labels: Labels of the values.
-        known: Whether the records determine them.
+        determined: Whether the records determine them.
     """
     estimates = {}
     for label in labels:
@@ -118,24 +120,24 @@ def values_as_estimates(search: Search, state: FitState, labels: Sequence[str], 
 def _with_start(test: TestFit, before: TestFit) -> TestFit:
     """A test with the motions and errors of an earlier fit as its start."""
     start = {}
-    for mine, other in zip(test.series, before.series):
-        start[mine.channel] = other.simulated - other.offset + mine.offset if test.kind != "decay" else other.simulated
+    for mine, earlier in zip(test.series, before.series):
+        start[mine.channel] = earlier.simulated - earlier.offset + mine.offset if test.kind != "decay" else earlier.simulated
     bands = {
-        name: {k: BandError(one.after, before.bands[name][k].after, one.low, one.high) for k, one in row.items()}
+        name: {k: BandError(error.after, before.bands[name][k].after, error.low, error.high) for k, error in row.items()}
         for name, row in test.bands.items()
     }
     return replace(test, start=start, bands=bands)
 
 
-def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestFit]:
+def test_fits_at(campaign: Campaign, search: Search, point: Point) -> list[TestFit]:
     """Measured and simulated motions of every test at a point."""
     study = search.study
-    motions = study.motions(place)
+    motions = study.motions(point)
     fits = {}
     if study.decays is not None:
         data = study.decays.data
         in_decays = np.asarray(motions.pop(0)).reshape(len(study.decay_records), len(data.dofs), -1)
-        offsets = place.own.reshape(len(study.decay_records), 3, -1)[:, 2] * np.asarray(data.unit)
+        offsets = point.own.reshape(len(study.decay_records), 3, -1)[:, 2] * np.asarray(data.unit)
         for record, residual, offset in zip(study.decay_records, in_decays, offsets):
             rows = []
             for j, dof in enumerate(data.dofs):
@@ -169,13 +171,13 @@ def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestF
 def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, dict[str, BandError]]:
     """Relative errors of energy in frequency bands, for a sea of this peak period (s)."""
     errors: dict[str, dict[str, BandError]] = {}
-    for one in series:
-        if not one.scored:
+    for motion in series:
+        if not motion.scored:
             continue
         row = {}
-        for name, (low, high) in bands_of(one.channel, period).items():
-            weights = band_weights(len(one.measured), step, low, high)
-            measured, simulated = weights.integral(one.measured), weights.integral(one.simulated)
+        for name, (low, high) in bands_of(motion.channel, period).items():
+            weights = band_weights(len(motion.measured), step, low, high)
+            measured, simulated = weights.integral(motion.measured), weights.integral(motion.simulated)
             row[name] = BandError(float(simulated / measured - 1), float("nan"), low, high)
-        errors[one.channel] = row
+        errors[motion.channel] = row
     return errors

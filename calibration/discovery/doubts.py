@@ -33,7 +33,7 @@ MAX_COEFFICIENT_RATIO = 3.0  # of a coefficient to its declared value, or the in
 
 
 def doubts_of(search: Search, state: FitState, fitted: Calibration, more: Sequence[Finding]) -> list[str]:
-    """Notes on what is doubtful in the final fit.
+    """Notes on doubts about the final fit.
 
     Args:
         search: The search.
@@ -53,17 +53,17 @@ def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary)
         alone: Residual of the fit to decays alone.
         now: Residual of the joint fit.
     """
-    said = []
-    for i, one in enumerate(study.series):
-        if one.kind == "decay" and study.used[i] and study.main[i] and one.spread > 0:
-            before, after = float(alone.error[i]) / one.spread, float(now.error[i]) / one.spread
+    notes = []
+    for i, series in enumerate(study.series):
+        if series.kind == "decay" and study.used[i] and study.main[i] and series.spread > 0:
+            before, after = float(alone.error[i]) / series.spread, float(now.error[i]) / series.spread
             if after > max(MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO * before):
-                said.append(
-                    f"fitted together with the seas, the decay {one.test} is given up: {percent(after)} of its motion is left, "
-                    f"{percent(before)} where decays are fitted alone. The model cannot follow both, and what is said of "
-                    f"{one.channel} is in doubt"
+                notes.append(
+                    f"fitted together with the seas, the decay {series.test} is given up: {percent(after)} of its motion is "
+                    f"left, {percent(before)} where decays are fitted alone. The model cannot follow both, and what is said of "
+                    f"{series.channel} is in doubt"
                 )
-    return said
+    return notes
 
 
 def worsened_motions(study: Study, baseline: ResidualSummary, now: ResidualSummary) -> list[str]:
@@ -74,15 +74,15 @@ def worsened_motions(study: Study, baseline: ResidualSummary, now: ResidualSumma
         baseline: Residual of the fitted baseline.
         now: Residual of the model with the effects.
     """
-    said = []
+    notes = []
     for i in np.flatnonzero(worsening(study, baseline, now) > 1):
-        one = study.series[i]
-        before, after = (percent(float(some.error[i]) / one.spread) for some in (baseline, now))
-        said.append(
-            f"{one.channel} of {one.test} is followed worse than by the baseline: {after} of the motion is left, "
+        series = study.series[i]
+        before, after = (percent(float(summary.error[i]) / series.spread) for summary in (baseline, now))
+        notes.append(
+            f"{series.channel} of {series.test} is followed worse than by the baseline: {after} of the motion is left, "
             f"{before} before"
         )
-    return said
+    return notes
 
 
 def outdone_effects(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[str, str]:
@@ -93,12 +93,12 @@ def outdone_effects(worth: Mapping[str, float], tried: Mapping[str, Verdict]) ->
 
     Args:
         worth: Gain of every effect in fitted and held-out tests, by name.
-        tried: Verdicts of removed effects, by name; of earlier searches those of the last round, too.
+        tried: Verdicts of removed effects, by name. From earlier searches, the last round's verdicts are included.
 
     Returns:
         The rejected effect by the name of the effect that it outdoes.
     """
-    refused = {name: one.bic for name, one in tried.items() if one.refused}
+    refused = {name: verdict.bic for name, verdict in tried.items() if verdict.refused}
     if not refused or any(name in worth for name in tried if name not in refused):  # the round let something in: there is more
         return {}
     best = max(refused, key=refused.__getitem__)
@@ -113,13 +113,13 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
     - a rejected effect explains more (`outdone_effects`);
     - the held-out error rose, in all or in the effect's motion.
     """
-    tried = {name: one.taken_out for name, one in search.rejected.items() if one.taken_out is not None}
-    verdicts = {one.name: search.found[one.name].verdict for one in state.chosen}
-    found = outdone_effects({name: one.worth for name, one in verdicts.items()}, tried)
+    tried = {name: rejected.taken_out for name, rejected in search.rejected.items() if rejected.taken_out is not None}
+    verdicts = {candidate.name: search.found[candidate.name].verdict for candidate in state.chosen}
+    doubted = outdone_effects({name: verdict.worth for name, verdict in verdicts.items()}, tried)
     every = held_out_error_rose(before.objective("holdout"), after.objective("holdout"))
     worse = [dof for dof in DOFS if held_out_error_rose(before.objective("holdout", dof), after.objective("holdout", dof))]
-    found |= {one.name: HELD_OUT_ERROR for one in state.chosen if every or one.dof in worse}
-    return found
+    doubted |= {candidate.name: HELD_OUT_ERROR for candidate in state.chosen if every or candidate.dof in worse}
+    return doubted
 
 
 def held_out_error_rose(before: float | None, after: float | None) -> bool:
@@ -129,7 +129,7 @@ def held_out_error_rose(before: float | None, after: float | None) -> bool:
 
 def unexplained_note(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
     """Note that the effects found do not make the model follow the records."""
-    names, worst = listed([effect_in_words(one.effect, one.dof) for one in chosen]), more[0]
+    names, worst = listed([effect_in_words(candidate.effect, candidate.dof) for candidate in chosen]), more[0]
     return (
         f"with {names} in the model {percent(worst.relative)} of {worst.channel} is left in {worst.test}: what acts is not, or "
         "not only, what was found, and sizes are less sure than their deviations say"
@@ -138,31 +138,35 @@ def unexplained_note(chosen: Sequence[Candidate], more: Sequence[Finding]) -> st
 
 def moving_release_notes(search: Search, state: FitState) -> list[str]:
     """Note on decays that begin in motion, where an effect with memory was found."""
-    names = [effect_in_words(one.effect, one.dof) for one in state.chosen if one.effect in MEMORY_EFFECTS]
-    study, said = search.study, []
+    names = [
+        effect_in_words(candidate.effect, candidate.dof) for candidate in state.chosen if candidate.effect in MEMORY_EFFECTS
+    ]
+    study, moving = search.study, []
     if study.decays is None or not names:
         return []
-    for record, own in zip(study.decay_records, state.look.place.own.reshape(len(study.decay_records), 3, -1)):
+    for record, release in zip(study.decay_records, state.look.place.own.reshape(len(study.decay_records), 3, -1)):
         i = study.decays.data.dofs.index(DOFS.index(str(record.degree_of_freedom)))
-        if abs(own[1, i]) > MAX_RELEASE_SPEED * float(np.hypot(*own[:2, i])):
-            said.append(record.id)
-    if not said:
+        if abs(release[1, i]) > MAX_RELEASE_SPEED * float(np.hypot(*release[:2, i])):
+            moving.append(record.id)
+    if not moving:
         return []
     return [
-        f"{listed(said)} {'begin' if len(said) > 1 else 'begins'} in motion, and {listed(names)} as if what has a memory "
+        f"{listed(moving)} {'begin' if len(moving) > 1 else 'begins'} in motion, and {listed(names)} as if what has a memory "
         "had been at rest until then: where that is not so sizes are wrong; let records begin at the release"
     ]
 
 
 def far_coefficient_notes(search: Search, fitted: Calibration) -> list[str]:
-    """Note on coefficients that end far from their declared values."""
-    some = [fitted.parameters[label] for label in search.setup.base if label in fitted.parameters]
+    """Note on coefficients that end far from their values in the baseline."""
+    estimates = [fitted.parameters[label] for label in search.setup.base if label in fitted.parameters]
     far = [
-        one
-        for one in some
-        if one.identifiable and one.start > 0 and not 1 / MAX_COEFFICIENT_RATIO < one.value / one.start < MAX_COEFFICIENT_RATIO
+        estimate
+        for estimate in estimates
+        if estimate.identifiable
+        and estimate.start > 0
+        and not 1 / MAX_COEFFICIENT_RATIO < estimate.value / estimate.start < MAX_COEFFICIENT_RATIO
     ]
     if not far:
         return []
-    named = ", ".join(f"{one.label} {number(one.value, 2)} ({number(one.start, 2)})" for one in far)
+    named = ", ".join(f"{estimate.label} {number(estimate.value, 2)} ({number(estimate.start, 2)})" for estimate in far)
     return [f"far from what was declared (in brackets): {named}; they may stand for something that the model lacks"]

@@ -62,13 +62,15 @@ class EffectFits:
 
     def active(self, chosen: Sequence[Candidate]) -> list[int]:
         """Directions that are free with some effects in the model."""
-        return list(dict.fromkeys([*self.base, *self.study.index([label for one in chosen for label in one.labels])]))
+        return list(
+            dict.fromkeys([*self.base, *self.study.index([label for candidate in chosen for label in candidate.labels])])
+        )
 
     def prior(self, chosen: Sequence[Candidate]) -> Prior:
-        """Priors with some effects in the model, whose amplitudes have those of plausible sizes."""
+        """Priors with some effects in the model; their amplitudes have the priors of plausible sizes."""
         mean, width = self.setup.prior.mean.copy(), self.setup.prior.width.copy()
-        for one in chosen:
-            for label, i in zip(one.amplitudes, self.study.index(one.amplitudes), strict=True):
+        for candidate in chosen:
+            for label, i in zip(candidate.amplitudes, self.study.index(candidate.amplitudes), strict=True):
                 mean[i], width[i] = self.setup.size_priors[label]
         return Prior(mean, width)
 
@@ -79,7 +81,7 @@ class EffectFits:
         x = np.asarray(study.space.start).copy()
         if study.decays is None:
             return Point(x, np.zeros((0, 0)))
-        own = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
+        releases = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
         if study.fitted_decays.any():
             run_fit(plain := prepare_fit(self.campaign), near=True)
             for label, value in zip(plain.decays.problem.space.labels, np.asarray(plain.unknowns.shared)):
@@ -88,8 +90,8 @@ class EffectFits:
             mine, theirs = np.asarray(study.decays.data.unit), np.asarray(plain.decays.problem.data.unit)
             for k, (record, values) in enumerate(zip(plain.decays.records, np.asarray(plain.unknowns.own))):
                 i = rows.index(record.id)
-                own[i] = (values.reshape(3, -1) * theirs[k] / mine[i]).ravel()
-        return Point(x, own)
+                releases[i] = (values.reshape(3, -1) * theirs[k] / mine[i]).ravel()
+        return Point(x, releases)
 
     def anchor(self, x: np.ndarray) -> None:
         """Set where the search begins, and in waves centre the coefficients' priors there.
@@ -99,15 +101,15 @@ class EffectFits:
         self.begun = x
         if not self.study.seas:
             return
-        stated = {one.label for one in self.study.space.free if math.isfinite(one.prior_deviation)}
+        stated = {parameter.label for parameter in self.study.space.free if math.isfinite(parameter.prior_deviation)}
         mine = self.study.index([name for name in self.setup.base if name not in stated])
         mean = self.setup.prior.mean.copy()
         mean[mine] = self.study.steps(x)[mine]
         self.setup = self.setup._replace(prior=Prior(mean, self.setup.prior.width))
 
-    def weigh_by_expected(self, place: Point) -> None:
+    def weigh_by_expected(self, point: Point) -> None:
         """Weigh tests in waves by the residuals that unknown forces would leave, estimated at a point."""
-        self.study = replace(self.study, expected=expected_rows(self.study, place))
+        self.study = replace(self.study, expected=expected_rows(self.study, point))
 
     def refit(self, look: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
         """Fit all directions of a linearisation until nothing is gained."""
@@ -159,24 +161,24 @@ class EffectFits:
             ResidualSummary.of(study, residual),
         )
 
-    def with_values(self, place: Point, values: Mapping[str, float]) -> Point:
+    def with_values(self, point: Point, values: Mapping[str, float]) -> Point:
         """A point with some parameters (SI) as given."""
-        x = place.x.copy()
+        x = point.x.copy()
         for label, value in values.items():
             i = self.study.labels.index(label)
             x[i] = self.study.space.free[i].transform.inverse(value)
-        return Point(x, place.own)
+        return Point(x, point.own)
 
-    def with_starting_values(self, place: Point, names: Sequence[str]) -> Point:
+    def with_starting_values(self, point: Point, names: Sequence[str]) -> Point:
         """A point with some directions set back to where the search began."""
-        at = np.abs(self.study.directions[self.study.index(names)]).sum(axis=0) > 0
-        return replace(place, x=np.where(at, self.begun, place.x))
+        moved = np.abs(self.study.directions[self.study.index(names)]).sum(axis=0) > 0
+        return replace(point, x=np.where(moved, self.begun, point.x))
 
     def likeliest(self, *states: FitState) -> FitState:
         """The state that follows the fitted tests best."""
         return min(states, key=lambda state: float(state.likelihood[self.study.used].sum()))
 
-    def assess(self, before: FitState, after: FitState, one: Candidate, last: bool = False) -> Verdict:
+    def assess(self, before: FitState, after: FitState, candidate: Candidate, last: bool = False) -> Verdict:
         """Whether an effect is accepted, by the held-out tests.
 
         Without held-out tests the fitted ones decide, and at `last` blocks of them that are left out in turn.
@@ -188,7 +190,7 @@ class EffectFits:
             if last and self.blocks is not None:
                 without, with_it = (self.blocks.residual_summary(state, self.prior(state.chosen)) for state in (before, after))
                 grounds = HeldOutComparison(self.blocks.study, np.ones(len(without.error), bool), without, with_it, True)
-        return assess_effect(study, before, after, one, prior, self.count, grounds)
+        return assess_effect(study, before, after, candidate, prior, self.count, grounds)
 
     @cached_property
     def blocks(self) -> HeldOutBlocks | None:

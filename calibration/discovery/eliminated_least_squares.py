@@ -38,29 +38,29 @@ def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
     return study.pooled * (boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
 
 
-def cost_of(study: Study, look: Linearisation, residual: np.ndarray, place: Point, used: np.ndarray, prior: Prior) -> float:
+def cost_of(study: Study, look: Linearisation, residual: np.ndarray, point: Point, used: np.ndarray, prior: Prior) -> float:
     """The cost that a fit minimises: deviances of the fitted series, and squares of the priors.
 
     Args:
         study: The study.
         look: Linearisation whose directions are free.
         residual: Residual in rows (n,).
-        place: The point that the residual is of.
+        point: The point that the residual is of.
         used: Which series (s,) are fitted.
         prior: Priors of the directions.
     """
     value = float(deviances(study, residual, BOX_COX_POWER)[used].sum())
-    value += float((prior_residuals(study, place, prior)[0][list(look.active)] ** 2).sum())
-    return value + float(((place.own / study.own_width) ** 2).sum())
+    value += float((prior_residuals(study, point, prior)[0][list(look.active)] ** 2).sum())
+    return value + float(((point.own / study.own_width) ** 2).sum())
 
 
-def prior_residuals(study: Study, place: Point, prior: Prior) -> tuple[np.ndarray, np.ndarray]:
+def prior_residuals(study: Study, point: Point, prior: Prior) -> tuple[np.ndarray, np.ndarray]:
     """Residuals of the priors, and their slopes along the directions (each d,).
 
     z (1 + (z / 3)^2) with z the distance from the mean in standard deviations (`STEEP_PRIOR_DEVIATIONS` is 3). A Gaussian prior
     is too weak against thousands of samples of what the model lacks: a weighed mass would be moved by twenty deviations.
     """
-    z = (study.steps(place.x) - prior.mean) / prior.width
+    z = (study.steps(point.x) - prior.mean) / prior.width
     return z * (1 + (z / STEEP_PRIOR_DEVIATIONS) ** 2), (1 + 3 * (z / STEEP_PRIOR_DEVIATIONS) ** 2) / prior.width
 
 
@@ -92,7 +92,7 @@ class NormalEquations(NamedTuple):
         """Matrix and gradient of the parameters with the fitted decays' own unknowns eliminated.
 
         Returns:
-            Matrix (q, q), gradient (q,), and by decay what recovers its own unknowns (r, o, q + 1).
+            Matrix (q, q), gradient (q,), and by decay the matrix that recovers its own unknowns (r, o, q + 1).
         """
         size = np.diagonal(self.matrix.own, axis1=1, axis2=2)
         ridge = damping * size + OWN_ROUNDING * size.mean(axis=1, keepdims=True) if size.size else size
@@ -111,20 +111,20 @@ def normal_equations(study: Study, look: Linearisation, weight: np.ndarray, used
         prior: Priors of the directions.
     """
     active = list(look.active)
-    far, steep = (one[active] for one in prior_residuals(study, look.place, prior))
+    far, steep = (values[active] for values in prior_residuals(study, look.place, prior))
     mine = weight * used[study.row_series]
     shared = look.slopes.T @ (mine[:, None] * look.slopes) + np.diag(steep**2)
     slope = look.slopes.T @ (mine * look.residual) + steep * far
     (records, size), q = study.own_width.shape, len(active)
-    own, cross, own_slope = np.zeros((records, size, size)), np.zeros((records, q, size)), np.zeros((records, size))
+    own_matrix, cross, own_slope = np.zeros((records, size, size)), np.zeros((records, q, size)), np.zeros((records, size))
     for i, span in enumerate(study.spans):
         weighed = weight[span, None] * look.own[span]
-        own[i] = weighed.T @ look.own[span] + np.diag(1 / study.own_width[i] ** 2)
+        own_matrix[i] = weighed.T @ look.own[span] + np.diag(1 / study.own_width[i] ** 2)
         cross[i] = look.slopes[span].T @ weighed
         own_slope[i] = weighed.T @ look.residual[span] + look.place.own[i] / study.own_width[i] ** 2
     fitted = np.array([used[study.row_series[span]].any() for span in study.spans], bool)
     gradient = Unknowns(slope, own_slope)  # type: ignore[arg-type]
-    return NormalEquations(ArrowMatrix(shared, cross, own), gradient, fitted)
+    return NormalEquations(ArrowMatrix(shared, cross, own_matrix), gradient, fitted)
 
 
 def symmetric_inverse(matrix: np.ndarray) -> np.ndarray:
@@ -136,16 +136,16 @@ def damped_step(
     study: Study, look: Linearisation, used: np.ndarray, prior: Prior, damping: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Damped step of the parameters (q,), and of the fitted decays' own unknowns (r, o)."""
-    found = normal_equations(study, look, row_weights(study, look.residual), used, prior)
-    matrix, slope, back = found.reduced(damping)
+    equations = normal_equations(study, look, row_weights(study, look.residual), used, prior)
+    matrix, slope, back = equations.reduced(damping)
     step = -symmetric_inverse(matrix) @ slope
-    return step, -own_of(back, -step) * found.fitted[:, None]
+    return step, -own_of(back, -step) * equations.fitted[:, None]
 
 
-def linear_residual(study: Study, look: Linearisation, step: np.ndarray, own: np.ndarray) -> np.ndarray:
+def linear_residual(study: Study, look: Linearisation, step: np.ndarray, own_step: np.ndarray) -> np.ndarray:
     """Residual in rows (n,) after a step, by the linearisation."""
     residual = look.residual + look.slopes @ step
-    for span, mine in zip(study.spans, own):
+    for span, mine in zip(study.spans, own_step):
         residual[span] += look.own[span] @ mine
     return residual
 
@@ -153,8 +153,8 @@ def linear_residual(study: Study, look: Linearisation, step: np.ndarray, own: np
 def projected_products(study: Study, look: Linearisation, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Products of columns with the residual, after projection.
 
-    What the directions of the linearisation and the decays' own unknowns can explain is projected out. Rows are weighed as in a
-    fit.
+    The part that the directions of the linearisation and the decays' own unknowns can explain is projected out. Rows are
+    weighed as in a fit.
 
     Args:
         study: The study.
@@ -165,14 +165,14 @@ def projected_products(study: Study, look: Linearisation, columns: np.ndarray) -
         Products with the residual (k,), and the columns' squares (k,).
     """
     root = np.sqrt(row_weights(study, look.residual) * study.used[study.row_series])[:, None]
-    base, columns, residual = (root * one for one in (look.slopes, columns, look.residual[:, None]))
+    base, columns, residual = (root * rows for rows in (look.slopes, columns, look.residual[:, None]))
     for span in study.spans:
-        own = np.linalg.qr(root[span] * look.own[span][:, look.own[span].any(axis=0)])[0]
+        basis = np.linalg.qr(root[span] * look.own[span][:, look.own[span].any(axis=0)])[0]
         for part in (base, columns, residual):
-            part[span] -= own @ (own.T @ part[span])
+            part[span] -= basis @ (basis.T @ part[span])
     size = np.linalg.norm(base, axis=0)
-    own = np.linalg.qr(base[:, size > 0] / size[size > 0])[0]
-    columns, residual = (part - own @ (own.T @ part) for part in (columns, residual))
+    basis = np.linalg.qr(base[:, size > 0] / size[size > 0])[0]
+    columns, residual = (part - basis @ (basis.T @ part) for part in (columns, residual))
     return (columns * residual).sum(axis=0), (columns**2).sum(axis=0)
 
 
@@ -215,8 +215,8 @@ def predict_gain(study: Study, look: Linearisation, prior: Prior) -> FirstOrderG
     residual, step = look.residual, np.zeros(len(look.active))
     covariance = np.zeros((len(step), len(step)))
     for _ in range(REWEIGHTINGS):
-        found = normal_equations(study, look, row_weights(study, residual), study.used, prior)
-        matrix, slope, back = found.reduced()
+        equations = normal_equations(study, look, row_weights(study, residual), study.used, prior)
+        matrix, slope, back = equations.reduced()
         covariance = symmetric_inverse(matrix)
         step = -covariance @ slope
         residual = linear_residual(study, look, step, -own_of(back, -step))

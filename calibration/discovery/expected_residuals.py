@@ -1,7 +1,7 @@
 """Expected size of residuals in waves where an unknown force acts: the weights of wave tests.
 
 A missing force F leaves a residual H F, which is largest at resonance. With equal weights, least squares reduces it by damping
-slow motion away. Weighed by what an unknown force leaves, a resonance counts as the few frequencies that it is.
+slow motion away. Weighed by the residual of an unknown force, a resonance counts as the few frequencies that it is.
 
     P_i = sum over j of |H_ij|^2 S_j + floor_i^2,    H = (-omega^2 + i omega C + K)^-1
 
@@ -40,13 +40,13 @@ def _tangents(record: SeaRecord, x: Float[Array, " p"]) -> Float[Array, "6 12"]:
     memory = model.rest().memory
 
     def acceleration(both: Float[Array, "12"], time: Float[Array, ""]) -> Float[Array, "6"]:
-        place, speed = both[:6], both[6:]
-        velocity = model.body_velocity(place, speed)
-        moved = model.rate(time, State(place, velocity, memory), record.sea)
-        return jax.jvp(model.position_rate, (place, velocity), (speed, moved.velocity))[1]
+        displacement, speed = both[:6], both[6:]
+        velocity = model.body_velocity(displacement, speed)
+        moved = model.rate(time, State(displacement, velocity, memory), record.sea)
+        return jax.jvp(model.position_rate, (displacement, velocity), (speed, moved.velocity))[1]
 
-    def tangent(sum_, one):
-        return sum_ + jax.jacfwd(acceleration)(jnp.concatenate(one[:2]), one[2]), None
+    def tangent(sum_, instant):
+        return sum_ + jax.jacfwd(acceleration)(jnp.concatenate(instant[:2]), instant[2]), None
 
     total, _ = jax.lax.scan(tangent, jnp.zeros((6, 12)), (position, rate, times))
     return total / len(times)
@@ -60,44 +60,52 @@ def impedance(record: SeaRecord, x: np.ndarray, frequency: np.ndarray) -> np.nda
         x: Parameter coordinates (p,).
         frequency: Frequencies (Hz; f,).
     """
-    found = -np.asarray(_tangents(record, jnp.asarray(x)))
+    tangents = -np.asarray(_tangents(record, jnp.asarray(x)))
     dofs = np.ix_(record.dofs, record.dofs)
     omega = 2 * np.pi * frequency[:, None, None]
-    return -(omega**2) * np.eye(len(record.dofs)) + 1j * omega * found[:, 6:][dofs] + found[:, :6][dofs]
+    return -(omega**2) * np.eye(len(record.dofs)) + 1j * omega * tangents[:, 6:][dofs] + tangents[:, :6][dofs]
 
 
 def force_spectrum(power: np.ndarray, noise: np.ndarray, pool: np.ndarray) -> np.ndarray:
-    """By line (f,), the same in every pool, of squares of which `noise` (f,) is expected in any case."""
-    found = np.zeros(len(power))
-    for one in np.unique(pool):
-        mine = pool == one
+    """Spectrum of a force by line (f,), constant in every pool of bands.
+
+    Args:
+        power: Squares of the force's lines, noise included (f,).
+        noise: Expected squares of the noise (f,).
+        pool: Pool of bands of every line (f,).
+    """
+    spectrum = np.zeros(len(power))
+    for number in np.unique(pool):
+        mine = pool == number
         level = 0.0
         for _ in range(SPECTRUM_ITERATIONS):
             weight = 1 / (level + noise[mine]) ** 2
             level = max(float((weight * (power[mine] - noise[mine])).sum() / weight.sum()), 0.0)
-        found[mine] = level
-    return found
+        spectrum[mine] = level
+    return spectrum
 
 
-def expected_rows(study: Study, place: Point) -> np.ndarray:
+def expected_rows(study: Study, point: Point) -> np.ndarray:
     """Expected size of every row (n,) over its floor, from the residual at a point."""
-    residual = study.residual(place, "all")
-    found = [np.ones(2 * len(study.cuts[0].take))] if study.decays is not None else []
-    begin = sum(len(one) for one in found)
-    for record, cut in zip(study.seas, study.cuts[len(found) :]):
+    residual = study.residual(point, "all")
+    parts = [np.ones(2 * len(study.cuts[0].take))] if study.decays is not None else []
+    begin = sum(len(part) for part in parts)
+    for record, cut in zip(study.seas, study.cuts[len(parts) :]):
         rows = slice(begin, begin := begin + 2 * len(cut.take))
-        found.append(_of_sea(study, record, cut, place, residual[rows], rows))
-    return np.concatenate(found)
+        parts.append(_of_sea(study, record, cut, point, residual[rows], rows))
+    return np.concatenate(parts)
 
 
-def _of_sea(study: Study, record: SeaRecord, cut: FourierRows, place: Point, residual: np.ndarray, rows: slice) -> np.ndarray:
+def _of_sea(study: Study, record: SeaRecord, cut: FourierRows, point: Point, residual: np.ndarray, rows: slice) -> np.ndarray:
     shape = (len(record.tests), len(record.dofs), -1, 2)
     floor = study.floor.ravel()[study.cell[rows]].reshape(shape)[..., 0]
     pool = (study.pool[rows] % study.dof.shape[1]).reshape(shape)[0, 0, :, 0]
     duration = record.measured.shape[-1] * float(record.times[1] - record.times[0])
-    stiffness = impedance(record, place.x, cut.take[: len(pool)] / duration)
-    found = [expected_over_floor(lines, mine, pool, stiffness) for lines, mine in zip(residual.reshape(shape) @ [1, 1j], floor)]
-    return np.repeat(np.array(found).ravel(), 2)
+    stiffness = impedance(record, point.x, cut.take[: len(pool)] / duration)
+    expected = [
+        expected_over_floor(lines, mine, pool, stiffness) for lines, mine in zip(residual.reshape(shape) @ [1, 1j], floor)
+    ]
+    return np.repeat(np.array(expected).ravel(), 2)
 
 
 def expected_over_floor(lines: np.ndarray, floor: np.ndarray, pool: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
@@ -111,6 +119,6 @@ def expected_over_floor(lines: np.ndarray, floor: np.ndarray, pool: np.ndarray, 
     """
     forces = np.abs(np.einsum("fji,if->jf", stiffness, lines)) ** 2 / 2
     noise = np.einsum("fji,if->jf", np.abs(stiffness) ** 2, floor**2)
-    missing = np.stack([force_spectrum(one, of_floor, pool) for one, of_floor in zip(forces, noise)])
+    missing = np.stack([force_spectrum(power, of_floor, pool) for power, of_floor in zip(forces, noise)])
     response = np.abs(np.linalg.inv(stiffness)) ** 2
     return np.sqrt(1 + np.einsum("fij,jf->if", response, missing) / floor**2)

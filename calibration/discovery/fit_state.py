@@ -1,4 +1,4 @@
-"""A fit with some effects in the model, and what it leaves of every motion."""
+"""A fit with some effects in the model, and its residual in every motion."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -28,7 +28,7 @@ class ResidualSummary(NamedTuple):
     def of(cls, study: Study, residual: np.ndarray) -> "ResidualSummary":
         """The summary of a residual given in rows (n,)."""
         above = study.dof * np.maximum(study.mean_squares(residual) - 1, 0.0)
-        samples = np.array([one.samples for one in study.series])
+        samples = np.array([series.samples for series in study.series])
         squares = study.by_region(study.pooled * np.maximum(study.levels(residual) - 1, 0.0))
         parts = np.sqrt(study.by_region(above * study.floor**2) / samples[:, None])
         return cls(squares, parts, minus_two_log_likelihood(study, residual))

@@ -97,8 +97,8 @@ class FourierRows(NamedTuple):
             samples: Number of samples.
             tapered: Fraction of the record that is tapered, against leakage from peaks.
         """
-        lines = max(one.member.shape[1] for one in cuts)
-        member = np.stack([np.pad(one.member, ((0, 0), (0, lines - one.member.shape[1]))) for one in cuts])
+        lines = max(bands.member.shape[1] for bands in cuts)
+        member = np.stack([np.pad(bands.member, ((0, 0), (0, lines - bands.member.shape[1]))) for bands in cuts])
         series, line = np.nonzero(member.any(axis=1))
         scale = np.sqrt(np.where(line == 0, 1.0, 2.0) / samples)
         band = member.argmax(axis=1)[series, line]
@@ -110,13 +110,13 @@ class FourierRows(NamedTuple):
         """Rows (2l, ...) of time series (s, t, ...)."""
         taper = self.taper.reshape(1, -1, *[1] * (values.ndim - 2))
         lines = np.fft.rfft(taper * values, axis=1)[:, : self.lines]
-        kept = lines.reshape(lines.shape[0] * lines.shape[1], *values.shape[2:])[self.take]
-        kept = kept * self.scale.reshape(-1, *[1] * (values.ndim - 2))
-        return np.stack([kept.real, kept.imag], axis=1).reshape(2 * len(kept), *values.shape[2:])
+        selected = lines.reshape(lines.shape[0] * lines.shape[1], *values.shape[2:])[self.take]
+        selected = selected * self.scale.reshape(-1, *[1] * (values.ndim - 2))
+        return np.stack([selected.real, selected.imag], axis=1).reshape(2 * len(selected), *values.shape[2:])
 
 
 def band_powers(cut: Bands, values: np.ndarray, tapered: float = 0.0) -> np.ndarray:
     """Mean square of a time series (t,) in every band (b,), per degree of freedom."""
     rows = FourierRows.of([cut], len(values), tapered)
-    found = np.bincount(rows.band, rows(values[None]) ** 2, len(cut.lines))
-    return np.where(cut.lines > 0, found / np.where(cut.lines > 0, 2 * cut.lines, 1.0), 0.0)
+    squares = np.bincount(rows.band, rows(values[None]) ** 2, len(cut.lines))
+    return np.where(cut.lines > 0, squares / np.where(cut.lines > 0, 2 * cut.lines, 1.0), 0.0)

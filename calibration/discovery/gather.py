@@ -73,8 +73,8 @@ def study_of(
     if decaying:
         shortest = min([MAX_FREQUENCY_RATIO / highest, *(crossing_period(r) for r in decaying)])
         step = min(shortest / STEPS_PER_PERIOD, memory_step(model))
-        decays, found, own_width, rows = gather_decay_series(decaying, model, space, from_rest, step, highest)
-        series += found
+        decays, new_series, own_width, rows = gather_decay_series(decaying, model, space, from_rest, step, highest)
+        series += new_series
         cuts.append(rows)
     seas: list[SeaRecord] = []
     notes: list[str] = []
@@ -85,8 +85,8 @@ def study_of(
             if not tests:
                 continue
             sea = _sea_record(run, made.sea, tests, model, space, from_rest, step)
-            found, rows = gather_sea(sea, tests, highest)
-            series += found
+            new_series, rows = gather_sea(sea, tests, highest)
+            series += new_series
             cuts.append(rows)
             seas.append(sea)
             notes += [*run.notes, *made.notes]
@@ -131,8 +131,8 @@ def gather_decay_series(
     """
     data = gather_decays(records, model, step, exact=True)
     decays = DecayProblem(model, space, data, from_rest, None if from_rest else equilibrium(model))
-    found, own_width = _decay_series(records, data, highest)
-    return decays, [one for one, _ in found], own_width, FourierRows.of([cut for _, cut in found], data.time.shape[1])
+    pairs, own_width = _decay_series(records, data, highest)
+    return decays, [series for series, _ in pairs], own_width, FourierRows.of([cut for _, cut in pairs], data.time.shape[1])
 
 
 def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tuple[list[MotionSeries], FourierRows]:
@@ -154,15 +154,24 @@ def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tup
         )
         for name, values, turn in zip(names, rows, turns):
             # sway is no more to be followed than to what surge is
-            one = _series(record, name, values, cut, motions[turns == turn].max(axis=0), sea.slow)
-            series.append(one if name in moves else replace(one, dof=0 * one.dof))
+            motion = _series(record, name, values, cut, motions[turns == turn].max(axis=0), sea.slow)
+            series.append(motion if name in moves else replace(motion, dof=0 * motion.dof))
     return series, FourierRows.of([cut] * len(series), n, TAPERED_SHARE)
 
 
 def _series(
     record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray, slow: float = 0.0
 ) -> MotionSeries:
-    """`motion` (b,) is the mean square of what the test is about, in the channel's unit."""
+    """Series of one motion of a test, with its floor.
+
+    Args:
+        record: Record of the test.
+        channel: The motion.
+        values: Measured values (m, rad; t,).
+        cut: Frequency bands.
+        motion: Mean square by band (b,) of the motion that the test is about, in the channel's unit.
+        slow: Frequency (Hz) below which bands are one pool.
+    """
     noise, spread = record.noise[channel], float(np.std(values))
     floor = np.sqrt(noise**2 + RELATIVE_FLOOR[record.kind] ** 2 * motion)
     return MotionSeries(
@@ -182,14 +191,18 @@ def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list
         for j, dof in enumerate(data.dofs):
             channel = DOFS[dof]
             if channel in record.values:
-                one = _series(record, channel, record.values[channel], cut, motion * float(data.unit[i, j]) ** 2)
-                series.append((one, cut))
+                channel_series = _series(record, channel, record.values[channel], cut, motion * float(data.unit[i, j]) ** 2)
+                series.append((channel_series, cut))
             else:  # a row of nothing keeps the arrays' shape
                 nothing = cut._replace(member=np.zeros_like(cut.member))
                 none = np.ones(BAND_COUNT)
-                one = MotionSeries(record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * none, cut.low, cut.high, n, none)
-                series.append((one, nothing))
-            width[i, 2, j] = (MAX_OFFSET_SHARE * one.spread + 3 * one.noise / np.sqrt(n)) / float(data.unit[i, j])
+                channel_series = MotionSeries(
+                    record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * none, cut.low, cut.high, n, none
+                )
+                series.append((channel_series, nothing))
+            width[i, 2, j] = (MAX_OFFSET_SHARE * channel_series.spread + 3 * channel_series.noise / np.sqrt(n)) / float(
+                data.unit[i, j]
+            )
     return series, width.reshape(len(records), -1)
 
 

@@ -39,36 +39,36 @@ class HeldOutBlocks:
 
     def residual_summary(self, state: FitState, prior: Prior) -> ResidualSummary:
         """Residual of every block where the others are fitted, beginning at a state."""
-        names = tuple(one.name for one in state.chosen)
+        names = tuple(candidate.name for candidate in state.chosen)
         if names not in self.summaries:
             self.summaries[names] = self._residual_summary(state, prior)
         return self.summaries[names]
 
     def _residual_summary(self, state: FitState, prior: Prior) -> ResidualSummary:
         study = self.study
-        own = np.zeros((0, 0))
+        releases = np.zeros((0, 0))
         if study.decays is not None:
-            own = np.asarray(first_guess(study.decay_records, study.decays.data))
-        place = Point(state.look.place.x, own)
+            releases = np.asarray(first_guess(study.decay_records, study.decays.data))
+        point = Point(state.look.place.x, releases)
         every = np.ones(len(study.series), bool)
         if study.decays is not None:
-            place = fit(
-                study, study.linearise(place, ()), every, prior, iterations=BLOCK_ITERATIONS, relinearisations=1
+            point = fit(
+                study, study.linearise(point, ()), every, prior, iterations=BLOCK_ITERATIONS, relinearisations=1
             ).look.place
         if study.seas and study.expected is None:
-            self.study = study = replace(study, expected=expected_rows(study, place))
-        look = study.linearise(place, state.look.active)
-        found = ResidualSummary.of(study, look.residual)
+            self.study = study = replace(study, expected=expected_rows(study, point))
+        look = study.linearise(point, state.look.active)
+        summary = ResidualSummary.of(study, look.residual)
         for number in range(BLOCKS_PER_TEST):
             out = self.block == number
-            there = fit(study, look, ~out, prior, iterations=BLOCK_ITERATIONS).look
+            fitted = fit(study, look, ~out, prior, iterations=BLOCK_ITERATIONS).look
             if study.decays is not None:
-                there = fit(study, there.restricted_to(()), out, prior, iterations=BLOCK_ITERATIONS).look
-            left = ResidualSummary.of(study, study.residual(there.place))
-            found = ResidualSummary(
-                *(np.where(out if one.ndim == 1 else out[:, None], one, old) for one, old in zip(left, found))
+                fitted = fit(study, fitted.restricted_to(()), out, prior, iterations=BLOCK_ITERATIONS).look
+            held_out = ResidualSummary.of(study, study.residual(fitted.place))
+            summary = ResidualSummary(
+                *(np.where(out if new.ndim == 1 else out[:, None], new, old) for new, old in zip(held_out, summary))
             )
-        return found
+        return summary
 
 
 def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarray]:
@@ -96,10 +96,10 @@ def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.
     if cut:
         assert study.decays is not None
         step = float(np.asarray(study.decays.data.step).max())
-        decays, found, own_width, rows = gather_decay_series(
+        decays, new_series, own_width, rows = gather_decay_series(
             cut, study.model, study.space, study.decays.from_rest, step, highest
         )
-        series += found
+        series += new_series
         cuts.append(rows)
         numbers += [i % BLOCKS_PER_TEST for i in range(len(cut)) for _ in decays.data.dofs]
     for sea in study.seas:
@@ -108,17 +108,17 @@ def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.
         if not fitted:
             continue
         places = [(i, k) for i in fitted for k in range(BLOCKS_PER_TEST)]
-        one = replace(
+        sea_blocks = replace(
             sea,
             measured=jnp.stack([sea.measured[i, :, k * n : (k + 1) * n] for i, k in places]),
             begins=tuple(sea.begins[i] + k * n for i, k in places),
             tests=tuple(f"{sea.tests[i]}, block {k + 1}" for i, k in places),
         )
-        tests = [replace(by_id[sea.tests[i]], id=name) for (i, _), name in zip(places, one.tests)]
-        found, rows = gather_sea(one, tests, highest)
-        series += found
+        tests = [replace(by_id[sea.tests[i]], id=name) for (i, _), name in zip(places, sea_blocks.tests)]
+        new_series, rows = gather_sea(sea_blocks, tests, highest)
+        series += new_series
         cuts.append(rows)
-        seas.append(one)
+        seas.append(sea_blocks)
         numbers += [k for _, k in places for _ in sea.dofs]
     if not series:
         raise ValueError("no test is long enough to be cut into blocks")
@@ -141,8 +141,8 @@ def split_record(record: Record) -> list[Record]:
         replace(
             record,
             id=f"{record.id}, block {k + 1}",
-            time=record.time[at],
-            values={name: values[at] for name, values in record.values.items()},
+            time=record.time[samples],
+            values={name: values[samples] for name, values in record.values.items()},
         )
-        for k, at in enumerate(cuts)
+        for k, samples in enumerate(cuts)
     ]

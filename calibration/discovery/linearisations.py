@@ -15,7 +15,7 @@ RELATIVE_FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
 
 @dataclass(frozen=True)
 class MotionSeries:
-    """One motion of one test, and what its residual is compared with.
+    """One motion of one test, with the noise and floor that its residual is compared with.
 
     Attributes:
         test: Name of the test.
@@ -79,9 +79,9 @@ class Point:
     x: np.ndarray
     own: np.ndarray
 
-    def moved(self, directions: np.ndarray, step: np.ndarray, own: np.ndarray) -> "Point":
+    def moved(self, directions: np.ndarray, step: np.ndarray, own_step: np.ndarray) -> "Point":
         """The point after a step along directions, and of the decays' own unknowns."""
-        return Point(self.x + step @ directions, self.own + own)
+        return Point(self.x + step @ directions, self.own + own_step)
 
 
 @dataclass(frozen=True)
@@ -102,14 +102,14 @@ class Linearisation:
     slopes: np.ndarray
     own: np.ndarray
 
-    def joined_with(self, other: "Linearisation") -> "Linearisation":
+    def joined_with(self, added: "Linearisation") -> "Linearisation":
         """The directions of another linearisation appended."""
-        return replace(self, active=(*self.active, *other.active), slopes=np.hstack([self.slopes, other.slopes]))
+        return replace(self, active=(*self.active, *added.active), slopes=np.hstack([self.slopes, added.slopes]))
 
     def restricted_to(self, active: Sequence[int]) -> "Linearisation":
         """Some of the directions only."""
-        at = [self.active.index(i) for i in active]
-        return replace(self, active=tuple(active), slopes=self.slopes[:, at])
+        columns = [self.active.index(i) for i in active]
+        return replace(self, active=tuple(active), slopes=self.slopes[:, columns])
 
 
 @dataclass(frozen=True)

@@ -35,43 +35,46 @@ def predictions_of(search: Search, state: FitState, tests: Sequence[TestFit]) ->
         state: A fit.
         tests: Measured and simulated motions of every test with this fit.
     """
-    held = [(test, one) for test in tests if test.use == "holdout" for one in test.series if one.scored]
+    held = [(test, series) for test in tests if test.use == "holdout" for series in test.series if series.scored]
     if not held:
         return ()
     covariance = predict_gain(search.study, state.look, search.prior(state.chosen)).covariance
-    slopes, left = motion_slopes(search, state), relative_errors(tests)
-    found = []
-    for test, one in held:
-        mine = slopes[test.id, one.channel][: len(one.measured)]
+    slopes, errors = motion_slopes(search, state), relative_errors(tests)
+    predictions = []
+    for test, series in held:
+        mine = slopes[test.id, series.channel][: len(series.measured)]
         parameters = np.maximum(np.einsum("tq,qr,tr->t", mine, covariance, mine), 0.0)
-        spread = float(np.std(one.measured))
-        error = float(np.hypot(one.noise, left.get((test.kind == "decay", one.channel), 0.0) * spread))
+        spread = float(np.std(series.measured))
+        error = float(np.hypot(series.noise, errors.get((test.kind == "decay", series.channel), 0.0) * spread))
         half_width = NORMAL_95 * np.sqrt(parameters + error**2)
-        inside = float(np.mean(np.abs(one.measured - one.simulated) <= half_width))
-        found.append(Prediction(test.id, one.channel, half_width, inside, float(np.sqrt(np.mean(parameters))), error))
-    return tuple(found)
+        inside = float(np.mean(np.abs(series.measured - series.simulated) <= half_width))
+        predictions.append(Prediction(test.id, series.channel, half_width, inside, float(np.sqrt(np.mean(parameters))), error))
+    return tuple(predictions)
 
 
 def relative_errors(tests: Sequence[TestFit]) -> dict[tuple[bool, str], float]:
-    """RMSE above the noise over the motion's standard deviation in the fitted tests, by kind (whether decays) and motion."""
+    """Relative errors of the fitted tests, by kind (whether decays) and motion.
+
+    A relative error is the RMSE above the noise over the motion's standard deviation.
+    """
     squares: dict[tuple[bool, str], list[float]] = {}
     for test in tests:
-        for one in test.series if test.use == "fit" else ():
-            if one.scored and (variance := float(np.var(one.measured))) > 0:
-                above = float(np.mean((one.measured - one.simulated) ** 2)) - one.noise**2
-                squares.setdefault((test.kind == "decay", one.channel), []).append(max(above, 0.0) / variance)
+        for series in test.series if test.use == "fit" else ():
+            if series.scored and (variance := float(np.var(series.measured))) > 0:
+                above = float(np.mean((series.measured - series.simulated) ** 2)) - series.noise**2
+                squares.setdefault((test.kind == "decay", series.channel), []).append(max(above, 0.0) / variance)
     return {key: float(np.sqrt(np.mean(values))) for key, values in squares.items()}
 
 
 def motion_slopes(search: Search, state: FitState) -> dict[tuple[str, str], np.ndarray]:
     """Slopes of the motions in time along a fit's directions (t, q), by test and motion.
 
-    A decay's own initial position, rate and offset are fitted to it whatever the parameters are. Its slopes are what that
-    leaves.
+    A decay's own initial position, rate and offset are fitted to it whatever the parameters are. Its slopes are the remainder
+    after that fit.
     """
     study = search.study
     parts = study.time_slopes(state.look.place, state.look.active)
-    q, found = len(state.look.active), {}
+    q, by_motion = len(state.look.active), {}
     if study.decays is not None:
         dofs = study.decays.data.dofs
         whole = parts.pop(0)
@@ -80,10 +83,10 @@ def motion_slopes(search: Search, state: FitState) -> dict[tuple[str, str], np.n
             weighed = (weight[:, None, None] * mine).reshape(-1, mine.shape[-1])
             moved = np.linalg.lstsq(weighed[:, q:], weighed[:, :q], rcond=None)[0]
             for dof, slopes in zip(dofs, mine[..., :q] - mine[..., q:] @ moved, strict=True):
-                found[record.id, DOFS[dof]] = slopes
+                by_motion[record.id, DOFS[dof]] = slopes
     for sea, mine in zip(study.seas, parts, strict=True):
         by_test = mine.reshape(len(sea.tests), len(sea.dofs), *mine.shape[1:])
         for test, motions in zip(sea.tests, by_test, strict=True):
             for dof, slopes in zip(sea.dofs, motions, strict=True):
-                found[test, DOFS[dof]] = slopes
-    return found
+                by_motion[test, DOFS[dof]] = slopes
+    return by_motion

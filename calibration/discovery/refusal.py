@@ -14,7 +14,7 @@ class ComparedData(StrEnum):
 
 
 class RefusalKind(StrEnum):
-    """Kind of a reason, with what `Refusal.values` has."""
+    """Kind of a reason; comments state the numbers in `Refusal.values`."""
 
     IMPOSSIBLE_VALUE = "impossible_value"  # value of the parameter `name`
     LITTLE_BIC_GAIN = "little_bic_gain"  # decrease of BIC, and the least that is asked

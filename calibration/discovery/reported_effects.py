@@ -59,7 +59,7 @@ class Effect:
     Attributes:
         effect: Its name in the catalogue.
         degree_of_freedom: The motion it acts in, or None.
-        meaning: What its amplitudes mean.
+        meaning: Meaning of its amplitudes.
         source: Reference of its law.
         parameters: Estimates by label.
         evidence: Why it is accepted.

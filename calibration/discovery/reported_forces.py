@@ -67,7 +67,7 @@ class ForceExcerpt:
         time: Times of the record (s).
         force: The force (N, N m).
         law: The force by its law (N, N m); empty: no law.
-        beside: What is plotted beside it: `velocity` or `wave`.
+        beside: Quantity that is plotted beside it: `velocity` or `wave`.
         values: Values of that quantity.
     """
 
@@ -91,7 +91,7 @@ class LatentForce:
         rms: Root mean square.
         shares: Fractions of the mean square in the mean and in frequency bands.
         coherence: Relation to motions and waves.
-        growth: Exponents of its growth, by what it grows with.
+        growth: Exponents of its growth, by the quantity that it grows with.
         law: A law of few terms.
         words: Description in words.
         shown: Part of it, to be plotted.

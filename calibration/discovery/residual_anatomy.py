@@ -22,22 +22,22 @@ MIN_RESIDUAL_OVER_NOISE = 1.3  # rms; a smaller residual is at the noise
 def anatomy(search: Search, state: FitState) -> tuple[Finding, ...]:
     """Residual of every motion and test, in numbers and words."""
     study = search.study
-    noise = np.array([[one.noise] for one in study.series])
+    noise = np.array([[series.noise] for series in study.series])
     mean_square, dof = study.mean_squares(state.residual) * study.floor**2 / noise**2, study.dof
-    found = []
-    for one, squares, freedom in zip(study.series, mean_square, dof):
-        if one.channel not in search.setup.motions or not freedom.sum():
+    findings = []
+    for series, squares, freedom in zip(study.series, mean_square, dof):
+        if series.channel not in search.setup.motions or not freedom.sum():
             continue
         ratio = math.sqrt(float((squares * freedom).sum() / freedom.sum()))
         # noise is in all bands, what is above it in those that are looked at
-        above = max(ratio**2 - 1, 0.0) * float(freedom.sum()) / one.samples
-        rms = one.noise * math.sqrt(above + 1)
+        above = max(ratio**2 - 1, 0.0) * float(freedom.sum()) / series.samples
+        rms = series.noise * math.sqrt(above + 1)
         bands = tuple(
-            (float(a), float(b), float(math.sqrt(s))) for a, b, s, f in zip(one.low, one.high, squares, freedom) if f > 0
+            (float(a), float(b), float(math.sqrt(s))) for a, b, s, f in zip(series.low, series.high, squares, freedom) if f > 0
         )
-        said = _words(ratio, rms / one.noise, bands)
-        found.append(Finding(one.test, one.use, one.channel, rms, one.noise, rms / one.spread, bands, said))
-    return tuple(found)
+        words = _words(ratio, rms / series.noise, bands)
+        findings.append(Finding(series.test, series.use, series.channel, rms, series.noise, rms / series.spread, bands, words))
+    return tuple(findings)
 
 
 def _words(within: float, over: float, bands: Sequence[tuple[float, float, float]]) -> str:
@@ -55,26 +55,26 @@ def signature(search: Search, before: FitState, after: FitState) -> tuple[float,
     Every motion that a test is about counts, relative to its own size and above its floor.
     """
     study = search.study
-    told = study.main & np.array([one.channel in search.setup.motions for one in study.series])
-    spread = np.array([one.spread for one in study.series])
-    total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
-    share = left / total if total > 0 else 0.0
+    told = study.main & np.array([series.channel in search.setup.motions for series in study.series])
+    spread = np.array([series.spread for series in study.series])
+    total, remaining = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
+    share = remaining / total if total > 0 else 0.0
     if not (after.left.squares.sum(axis=1) > (MIN_RESIDUAL_OVER_NOISE**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[
         told
     ].any():
         fitted = [record for record in search.campaign.records if record.use == "fit"]
-        declared = all(set(record.noise) - {WAVE} <= set(search.campaign.manifest.noise) for record in fitted)
-        return share, f"white at the {'declared noise level' if declared else 'level of the noise, which was estimated'}"
+        noise_declared = all(set(record.noise) - {WAVE} <= set(search.campaign.manifest.noise) for record in fitted)
+        return share, f"white at the {'declared noise level' if noise_declared else 'level of the noise, which was estimated'}"
     by_motion: dict[tuple[str, str], float] = {}
-    for one, relative in zip(study.series, np.where(told, after.left.error / spread, 0.0)):
-        key = (one.channel, "decays" if one.kind == "decay" else "waves")
+    for series, relative in zip(study.series, np.where(told, after.left.error / spread, 0.0)):
+        key = (series.channel, "decays" if series.kind == "decay" else "waves")
         by_motion[key] = max(by_motion.get(key, 0.0), float(relative))
     rows = sorted(by_motion.items(), key=lambda item: -item[1])[:3]
-    said = ", ".join(
+    largest = ", ".join(
         f"{channel} in {kind} ({100 * value:.0f} % of the motion)" for (channel, kind), value in rows if value > 0.005
     )
     i = int(np.argmax(np.where(told, after.left.error / spread, 0.0)))
-    one = study.series[i]
-    k = int(np.argmax((study.mean_squares(after.residual)[i] - 1) * one.dof * one.floor**2))
-    where = f"largest in {one.channel} of the test {one.test}, {one.low[k]:.3g} to {one.high[k]:.3g} Hz"
-    return share, f"{said or 'small in every motion'}; {where}"
+    series = study.series[i]
+    k = int(np.argmax((study.mean_squares(after.residual)[i] - 1) * series.dof * series.floor**2))
+    where = f"largest in {series.channel} of the test {series.test}, {series.low[k]:.3g} to {series.high[k]:.3g} Hz"
+    return share, f"{largest or 'small in every motion'}; {where}"

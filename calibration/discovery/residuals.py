@@ -36,18 +36,18 @@ class Frame(NamedTuple):
 
 @jit_once
 def decay_residual(
-    problem: DecayProblem, x: Float[Array, " p"], own: Float[Array, " o"], record: DecayData
+    problem: DecayProblem, x: Float[Array, " p"], own_unknowns: Float[Array, " o"], record: DecayData
 ) -> Float[Array, "c t"]:
     """Simulated minus measured motions of a decay, zero where there is no sample (c, t)."""
-    return problem.residual(x, own, record)
+    return problem.residual(x, own_unknowns, record)
 
 
 @jit_once
 def decay_slopes(
-    problem: DecayProblem, frame: Frame, own: Float[Array, " o"], record: DecayData
+    problem: DecayProblem, frame: Frame, own_unknowns: Float[Array, " o"], record: DecayData
 ) -> tuple[Float[Array, "c t"], Float[Array, "c t k"]]:
     """Residual of a decay (c, t), and slopes along directions and own unknowns (c, t, k)."""
-    return problem.slopes(frame.origin, own, record, frame.basis)
+    return problem.slopes(frame.origin, own_unknowns, record, frame.basis)
 
 
 class SeaRecord(eqx.Module):
@@ -98,9 +98,9 @@ class SeaRecord(eqx.Module):
         """Simulated minus measured motions by test; zeros of tests that have not ended after `count` steps."""
         motion = observe(model, grid, self.times, rest if self.from_rest else None, in_waves=True)
         n = self.measured.shape[-1]
-        found = jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins]) - self.measured
+        residual = jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins]) - self.measured
         ended = self.times[np.array(self.begins) + n - 1] <= self.times[0] + (count + STEP_ROUNDING) * self.step
-        return jnp.where(ended[:, None, None], found, 0.0)
+        return jnp.where(ended[:, None, None], residual, 0.0)
 
 
 @jit_once

@@ -1,4 +1,4 @@
-"""Search for missing effects: what it has found so far, the baseline's fit, mass properties."""
+"""Search for missing effects: evidence so far, fit of the baseline, mass properties."""
 
 import math
 from typing import NamedTuple
@@ -78,62 +78,62 @@ class Search(EffectFits):
     def fit_baseline(self) -> FitState:
         """Fit the baseline."""
         self.say("fitting the baseline", 0.03)
-        place = self.start
-        self.anchor(place.x)
+        point = self.start
+        self.anchor(point.x)
         if self.study.decays is not None and self.study.seas:
-            self.alone = ResidualSummary.of(self.study, self.study.residual(place))
+            self.alone = ResidualSummary.of(self.study, self.study.residual(point))
         if self.study.seas:
-            self.weigh_by_expected(place)
+            self.weigh_by_expected(point)
         self.say("baseline: slopes", 0.1)
-        return self.refit(self.study.linearise(place, self.base), (), "baseline", 0.15)
+        return self.refit(self.study.linearise(point, self.base), (), "baseline", 0.15)
 
     def likelihood_gain(self, before: FitState, after: FitState) -> float:
         """Decrease of -2 ln L of the fitted tests from one state to another."""
         return float((before.likelihood - after.likelihood)[self.study.used].sum())
 
-    def reject(self, one: Candidate, why: Refusal | None, taken_out: Verdict | None = None) -> None:
+    def reject(self, candidate: Candidate, why: Refusal | None, taken_out: Verdict | None = None) -> None:
         """Record why a candidate is not in the model.
 
         Args:
-            one: The candidate.
+            candidate: The candidate.
             why: The reason; None records nothing.
             taken_out: The verdict that removed it, where it was in the model.
         """
         if why is not None:
-            self.rejected[one.name] = Rejected(one.effect, one.dof, why, taken_out)
+            self.rejected[candidate.name] = Rejected(candidate.effect, candidate.dof, why, taken_out)
 
     def with_mass_properties(self, state: FitState) -> FitState:
         """The model with mass properties as an effect, where they are further off than weighing usually is.
 
         They are free within their priors in every fit, so that no error shows that they are wrong.
         """
-        one = next((one for one in self.setup.candidates if one.effect == "mass_properties"), None)
-        if one is None or one in state.chosen:
+        candidate = next((candidate for candidate in self.setup.candidates if candidate.effect == "mass_properties"), None)
+        if candidate is None or candidate in state.chosen:
             return state
-        mine, width = self.study.index(one.amplitudes), self.setup.prior.width[self.study.index(one.amplitudes)]
+        mine, width = self.study.index(candidate.amplitudes), self.setup.prior.width[self.study.index(candidate.amplitudes)]
         if np.abs(self.study.steps(state.look.place.x)[mine] / width).max() < 1:
             return state
-        chosen = (*state.chosen, one)
+        chosen = (*state.chosen, candidate)
         after = self.refit(self.study.linearise(state.look.place, self.active(chosen)), chosen, "mass properties let go", 0.98)
         prior = self.prior(chosen)
         deviation = predict_gain(self.study, after.look, prior).deviation[[after.look.active.index(i) for i in mine]]
         far = (np.abs(self.study.steps(after.look.place.x)[mine]) - MASS_DEVIATIONS_ALLOWED * width) / deviation
         squares = [
-            float((prior_residuals(self.study, at.look.place, by)[0][mine] ** 2).sum())
-            for at, by in ((state, self.prior(state.chosen)), (after, prior))
+            float((prior_residuals(self.study, fitted.look.place, by)[0][mine] ** 2).sum())
+            for fitted, by in ((state, self.prior(state.chosen)), (after, prior))
         ]
         gain = self.likelihood_gain(state, after) + squares[0] - squares[1]
-        off = [label for label, beyond in zip(one.amplitudes, far) if beyond > MIN_SIGNIFICANCE]
+        off = [label for label, beyond in zip(candidate.amplitudes, far) if beyond > MIN_SIGNIFICANCE]
         if not off or gain - len(off) * math.log(self.count) < MIN_BIC_GAIN:
             return state
-        verdict = self.assess(state, after, one, last=True)
+        verdict = self.assess(state, after, candidate, last=True)
         if verdict.net < -MIN_HELD_OUT_GAIN:
             return state
         # scores and BIC are of errors, and none tells of it
-        self.found[one.name] = AcceptedEffect(
+        self.found[candidate.name] = AcceptedEffect(
             math.nan, state, after, verdict._replace(bic=math.nan, refused=None), (), math.nan, np.zeros(0)
         )
-        self.rejected.pop(one.name, None)
+        self.rejected.pop(candidate.name, None)
         names = " and ".join(label.split(".")[1].replace("_", " ") for label in off)
         self.notes.append(
             f"{names} {'are' if len(off) > 1 else 'is'} further from what is declared than what was weighed usually is; the "

@@ -49,7 +49,7 @@ class StudySetup(NamedTuple):
     Attributes:
         study: The study.
         candidates: Candidate effects.
-        declared: The model of the platform file.
+        baseline: The model of the platform file.
         base: Labels of the model's free coefficients.
         nuisances: Names of nearly known parameters, free within their priors.
         prior: Priors of all directions.
@@ -60,7 +60,7 @@ class StudySetup(NamedTuple):
 
     study: Study
     candidates: tuple[Candidate, ...]
-    declared: Model
+    baseline: Model
     base: tuple[str, ...]
     nuisances: tuple[str, ...]
     prior: Prior
@@ -107,99 +107,108 @@ def set_up_study(
     if not used:
         raise InputError(source, [Problem("tests", "at least one decay or test in waves marked `use: fit`", "none")])
     waves = [r for r in campaign.records if r.kind in IN_WAVES and r.use != "ignore"]
-    declared = with_diffraction(campaign.model, options)
-    labels = labels_of(campaign, declared, sorted(motions), None)
-    mass, stiffness = (np.asarray(m) for m in linearised(declared, equilibrium(declared)))
+    baseline = with_diffraction(campaign.model, options)
+    labels = labels_of(campaign, baseline, sorted(motions), None)
+    mass, stiffness = (np.asarray(m) for m in linearised(baseline, equilibrium(baseline)))
     variance = max((float(np.var(r.wave)) for r in waves if r.wave is not None), default=1.0)
-    step = sea_step(declared, options) if waves else 0.0
+    step = sea_step(baseline, options) if waves else 0.0
     scales = noticeable_scales(mass, stiffness, motions)
-    candidates, scaled, units = catalogue(declared, scales, bool(waves), variance, step)
-    if not stiffness[2, 2] > MIN_HEAVE_STIFFNESS * float(declared.body.mass * declared.environment.gravity):
+    candidates, scaled, units = catalogue(baseline, scales, bool(waves), variance, step)
+    if not stiffness[2, 2] > MIN_HEAVE_STIFFNESS * float(baseline.body.mass * baseline.environment.gravity):
         # nothing holds up the weight of more mass: there would be no equilibrium
-        candidates = [replace(one, amplitudes=tuple(x for x in one.amplitudes if x != MASS)) for one in candidates]
+        candidates = [
+            replace(candidate, amplitudes=tuple(x for x in candidate.amplitudes if x != MASS)) for candidate in candidates
+        ]
         scaled.pop(MASS)
-    for own in extra:
-        if own.load is None or set(own.sizes) != set(own.amplitudes) or own.shapes:
-            raise ValueError(f"{own.name}: one's own candidate has a load, a size of every amplitude, and no shapes")
-        if own.dof is not None and own.dof not in DOFS:
-            raise ValueError(f"{own.name}: a motion is one of {', '.join(DOFS)}, or None")
-        if unknown := set(own.sizes) - set(own.load.values):
+    for candidate in extra:
+        if candidate.load is None or set(candidate.sizes) != set(candidate.amplitudes) or candidate.shapes:
+            raise ValueError(f"{candidate.name}: one's own candidate has a load, a size of every amplitude, and no shapes")
+        if candidate.dof is not None and candidate.dof not in DOFS:
+            raise ValueError(f"{candidate.name}: a motion is one of {', '.join(DOFS)}, or None")
+        if unknown := set(candidate.sizes) - set(candidate.load.values):
             raise ValueError(
-                f"{own.name}: amplitudes are labels of its load's values, {', '.join(own.load.values)}; found "
+                f"{candidate.name}: amplitudes are labels of its load's values, {', '.join(candidate.load.values)}; found "
                 f"{', '.join(sorted(unknown))}"
             )
-        for label, size in own.sizes.items():
-            neutral = float(own.load.values[label])
+        for label, size in candidate.sizes.items():
+            neutral = float(candidate.load.values[label])
             scaled[label], units[label] = FreeParameter(label, neutral, Scaled(neutral, 1.0), 0.0, math.inf), float(size)
     candidates = [*candidates, *extra]
     # what the platform file has is fitted, not looked for
-    taken = set(declared.values) - (requested_table_labels(declared) - set(labels)) - zero_terms(declared, labels)
-    candidates = [one for one in candidates if not set(one.amplitudes) & taken]
-    scaled = {label: one for label, one in scaled.items() if label not in taken}
-    units = {label: one for label, one in units.items() if label not in taken}
-    base_space = space_of(campaign, labels, declared)
+    taken = set(baseline.values) - (requested_table_labels(baseline) - set(labels)) - zero_terms(baseline, labels)
+    candidates = [candidate for candidate in candidates if not set(candidate.amplitudes) & taken]
+    scaled = {label: parameter for label, parameter in scaled.items() if label not in taken}
+    units = {label: unit for label, unit in units.items() if label not in taken}
+    base_space = space_of(campaign, labels, baseline)
     nuisances: dict[str, tuple[dict[str, float], float]] = {}  # name -> parameters and how they go together, deviation
     free: list[FreeParameter] = [*base_space.free]
-    for name in next(one.amplitudes for one in candidates if one.effect == "mass_properties"):
+    for name in next(candidate.amplitudes for candidate in candidates if candidate.effect == "mass_properties"):
         nuisances[name] = ({name: 1.0}, MASS_PRIOR_WIDTH)
     # draught and trim are as the platform was ballasted, sensors zeroed afloat or not
     for dof in ("heave", "roll", "pitch"):
         if dof in motions and (dof == "heave" or len(motions) > 1):
             nuisances[f"static_offset.{dof}.force"] = ({f"static_offset.{dof}.force": 1.0}, TRIM_PRIOR_WIDTH)
     # catenaries stay as declared
-    springs = [load for load in declared.loads if isinstance(load, MooringLines)]
+    springs = [load for load in baseline.loads if isinstance(load, MooringLines)]
     lines = sorted(f"{load.prefix}.{line}" for load in springs for line in load.stiffness)
     if lines and not any(label.startswith("mooring.") for label in labels):
-        values = {label: float(value) for label, value in declared.values.items() if label.startswith("mooring.")}
+        values = {label: float(value) for label, value in baseline.values.items() if label.startswith("mooring.")}
         for name in values:
             value = values[name]
             free.append(FreeParameter(name, value, LogInterval(0.5 * value, 2 * value), 0.0, math.inf))
-        tension = {line: _pretension(declared, line) for line in lines}
+        tension = {line: _pretension(baseline, line) for line in lines}
         stretch = [tension[line] / values[f"{line}.stiffness"] / values[f"{line}.unstretched_length"] for line in lines]
         nuisances["mooring_stiffness"] = ({f"{line}.stiffness": 1.0 for line in lines}, STIFFNESS)
         share = PRETENSION * float(np.mean(stretch))
         nuisances["mooring_pretension"] = ({f"{line}.unstretched_length": 1.0 for line in lines}, max(share, 1e-5))
-    model = with_drag(declared)
-    ends = bool(waves) and bool((np.asarray(declared.hull.ends.radius) == 0).any()) if declared.hull.ends.label else False
+    model = with_drag(baseline)
+    ends = bool(waves) and bool((np.asarray(baseline.hull.ends.radius) == 0).any()) if baseline.hull.ends.label else False
     if ends:
         free.append(FreeParameter("covered_ends.share", 0.0, Scaled(0.0, 1.0), 0.0, math.inf))
         nuisances["covered_ends.share"] = ({"covered_ends.share": 1.0}, COVERED_ENDS_PRIOR_WIDTH)
     model = with_candidates(model, candidates, ["covered_ends.share"] if ends else [])
     free += list(scaled.values())
     space = ParameterSpace(tuple(free))
-    start = {one.label: one.start for one in space.free}
+    start = {parameter.label: parameter.start for parameter in space.free}
     model = model.at_values(start)
     names, rows = [], []
-    place = {label: i for i, label in enumerate(space.labels)}
+    column = {label: i for i, label in enumerate(space.labels)}
     prior_mean, prior_width = [], []
     x0 = np.asarray(space.start)
 
     def direction(name: str, parts: dict[str, float], mean: float, deviation: float) -> None:
-        row = np.zeros(len(place))
+        row = np.zeros(len(column))
         for label, weight in parts.items():
-            row[place[label]] = weight * units.get(label, 1.0)
+            row[column[label]] = weight * units.get(label, 1.0)
         names.append(name)
         rows.append(row)
         prior_mean.append(mean)
         prior_width.append(deviation)
 
-    for one in base_space.free:
-        known = math.isfinite(one.prior_deviation)
-        mean = one.prior_mean - float(x0[place[one.label]]) if known else 0.0
-        deviation = one.prior_deviation if known else prior_width_of(one.label, declared, bool(waves))
-        direction(one.label, {one.label: 1.0}, mean, deviation)
+    for parameter in base_space.free:
+        has_prior = math.isfinite(parameter.prior_deviation)
+        mean = parameter.prior_mean - float(x0[column[parameter.label]]) if has_prior else 0.0
+        deviation = parameter.prior_deviation if has_prior else prior_width_of(parameter.label, baseline, bool(waves))
+        direction(parameter.label, {parameter.label: 1.0}, mean, deviation)
     for name, (parts, deviation) in nuisances.items():
         direction(name, parts, 0.0, deviation)
-    kept = {"mass_properties"} if campaign.manifest.zero is not None else {"mass_properties", "static_offset"}
-    candidates = [one for one in candidates if not set(one.amplitudes) <= set(nuisances) or one.effect in kept]
+    kept_effects = {"mass_properties"} if campaign.manifest.zero is not None else {"mass_properties", "static_offset"}
+    candidates = [
+        candidate
+        for candidate in candidates
+        if not set(candidate.amplitudes) <= set(nuisances) or candidate.effect in kept_effects
+    ]
     stated, seas = campaign.manifest.plausible, Seas.of(campaign.records, options.low, options.cutoff)
-    plausible = plausible_sizes(declared, candidates, scales, seas, stated, source)
-    reach = {label: (np.array([one.lower, one.upper]) - scaled[label].start) / units[label] for label, one in plausible.items()}
+    plausible = plausible_sizes(baseline, candidates, scales, seas, stated, source)
+    reach = {
+        label: (np.array([size_range.lower, size_range.upper]) - scaled[label].start) / units[label]
+        for label, size_range in plausible.items()
+    }
     size_priors = {}
-    for label, found in plausible.items():
-        mean = 0.0 if found.expected is None else (found.expected - scaled[label].start) / units[label]
+    for label, size_range in plausible.items():
+        mean = 0.0 if size_range.expected is None else (size_range.expected - scaled[label].start) / units[label]
         by_range = float(np.abs(reach[label]).max()) / PLAUSIBLE_DEVIATIONS
-        size_priors[label] = mean, by_range if found.deviation is None else found.deviation / units[label]
+        size_priors[label] = mean, by_range if size_range.deviation is None else size_range.deviation / units[label]
     for candidate in candidates:
         for label in candidate.amplitudes:
             if label not in names:
@@ -212,19 +221,19 @@ def set_up_study(
         limits[names.index(label)] = np.sort(span)
     study = replace(study_of(model, space, names, np.array(rows), campaign, options, width), size_limits=limits)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
-    named = (tuple(candidates), declared, tuple(labels), tuple(nuisances))
+    named = (tuple(candidates), baseline, tuple(labels), tuple(nuisances))
     return StudySetup(study, *named, prior, tuple(motions), plausible, size_priors)
 
 
-def zero_terms(declared: Model, labels: Sequence[str]) -> set[str]:
-    """Labels of terms of the equation of motion that are declared zero and not fitted."""
-    values = {label: float(value) for label, value in declared.values.items() if label.startswith(TERMS)}
+def zero_terms(baseline: Model, labels: Sequence[str]) -> set[str]:
+    """Labels of terms of the equation of motion that are zero in the baseline and not fitted."""
+    values = {label: float(value) for label, value in baseline.values.items() if label.startswith(TERMS)}
     return {label for label, value in values.items() if value == 0} - set(labels)
 
 
-def prior_width_of(label: str, declared: Model, waves: bool) -> float:
+def prior_width_of(label: str, baseline: Model, waves: bool) -> float:
     """Prior standard deviation of a coefficient's logarithm."""
-    if not waves or float(declared.values[label]) == 0:
+    if not waves or float(baseline.values[label]) == 0:
         return VAGUE_DEVIATION
     return DAMPING_PRIOR_WIDTH if label.startswith("linear_damping.") else COEFFICIENT_PRIOR_WIDTH
 

@@ -215,7 +215,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
 
     null = Point(started, np.zeros((0, 0)))
     damping = ("linear_damping.B33",)
-    before = calibration(null, setup.declared, damping)
+    before = calibration(null, setup.baseline, damping)
 
     def moved(some: Sequence[str], size: float, far: float) -> Point:
         """A point where effects have some size, and their shapes are some steps off."""
@@ -242,7 +242,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
         values = {
             label: study.value(label, place.x) for effect in some for label in (*kinds[effect].labels, *kinds[effect].choices)
         }
-        model = with_effects(setup.declared, values).with_values(values)
+        model = with_effects(setup.baseline, values).with_values(values)
         after = calibration(place, model, (*damping, *values))
         found = fake_diagnosis(baseline=before, augmented=after, seas=OPTIONS, campaign=campaign.manifest.name, predictions=())
         write_diagnosis(found, tmp_path / str(i), figures=False)

@@ -95,7 +95,7 @@ class Candidate:
     @property
     def choices(self) -> tuple[str, ...]:
         """Labels of discrete choices, which no fit moves."""
-        return tuple(dict.fromkeys(label for at in self.grid for label in at if label not in self.shapes))
+        return tuple(dict.fromkeys(label for values in self.grid for label in values if label not in self.shapes))
 
     @property
     def name(self) -> str:
@@ -202,28 +202,28 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
         KeyError: If no effect has such a label.
     """
     present = model.values
-    left = [label for label in dict.fromkeys(labels) if label not in present]
-    if not left:
+    missing = [label for label in dict.fromkeys(labels) if label not in present]
+    if not missing:
         return model
     drag = with_drag(model)
-    if rest := set(left) & set(drag.values):
-        model, left = drag, [label for label in left if label not in rest]
-    for make in OPTIONAL_EFFECTS if left else ():
+    if rest := set(missing) & set(drag.values):
+        model, missing = drag, [label for label in missing if label not in rest]
+    for make in OPTIONAL_EFFECTS if missing else ():
         effect = make(model)
-        keys = {key for label, key in effect.keys.items() if label in left}
+        keys = {key for label, key in effect.keys.items() if label in missing}
         if keys:
             added = effect.restricted(keys)
             model, gone = model.with_effect(added), set(added.values)
-            left = [label for label in left if label not in gone]
-    if left:
-        raise KeyError(f"no effect with the parameter {left[0]!r}")
+            missing = [label for label in missing if label not in gone]
+    if missing:
+        raise KeyError(f"no effect with the parameter {missing[0]!r}")
     return model
 
 
 def with_candidates(model: Model, candidates: Sequence[Candidate], nuisances: Sequence[str] = ()) -> Model:
     """The model with every candidate at its neutral value."""
-    for one in candidates:
-        if one.load is not None:
-            model = model.with_effect(one.load)
-    labels = [label for one in candidates for label in one.labels]
+    for candidate in candidates:
+        if candidate.load is not None:
+            model = model.with_effect(candidate.load)
+    labels = [label for candidate in candidates for label in candidate.labels]
     return with_effects(model, [*labels, *nuisances])

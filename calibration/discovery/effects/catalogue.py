@@ -69,13 +69,13 @@ def catalogue(
 def _of_tables(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
     """Add effects that the platform file requests."""
     looked_for = requested_table_labels(model)
-    tables = {k: one for k, one in TABLE_EFFECTS.items() if f"{k}.share" in looked_for and (waves or not one.in_waves)}
-    for effect, one in tables.items():
+    tables = {k: table for k, table in TABLE_EFFECTS.items() if f"{k}.share" in looked_for and (waves or not table.in_waves)}
+    for effect, table in tables.items():
         share = builder.add_linear(f"{effect}.share", NOTICEABLE_SHARE)
-        builder.add(effect, None, [share], passive=True, telling=one.telling, source=one.load.source)
+        builder.add(effect, None, [share], passive=True, telling=table.telling, source=table.load.source)
     if len(tables) > 1:  # what one program has computed belongs together: one table alone may not be better than none
         shares = [f"{effect}.share" for effect in tables]
-        telling, sources = next(iter(tables.values())).telling, "; ".join(one.load.source for one in tables.values())
+        telling, sources = next(iter(tables.values())).telling, "; ".join(table.load.source for table in tables.values())
         builder.add("potential_flow", None, shares, passive=True, telling=telling, source=sources)
 
 
@@ -147,7 +147,9 @@ def _of_mass(builder: CatalogueBuilder, model: Model, scales: Mapping[str, Notic
 def _of_strips(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
     """Add other laws of drag and of wave excitation."""
     drags = [drag for load in model.loads if (drag := drag_of(load)) is not None]
-    if groups := sorted({key[0] for one in drags if isinstance(one.law, ConstantLaw | SlowMotionLaw) for key in one.Cd}):
+    if groups := sorted(
+        {key[0] for morison in drags if isinstance(morison.law, ConstantLaw | SlowMotionLaw) for key in morison.Cd}
+    ):
         builder.add(
             "amplitude_dependent_drag",
             None,
@@ -182,14 +184,14 @@ def _of_strips(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
         builder.add(
             "wave_excitation",
             None,
-            [builder.add_linear(f"wave_excitation.{one}", 0.05, 1.0) for one in pressed],
+            [builder.add_linear(f"wave_excitation.{label}", 0.05, 1.0) for label in pressed],
             telling="the platform held in regular waves of three periods, its forces measured",
             source=WaveExcitation.source,
         )
 
 
 def _of_gauges(builder: CatalogueBuilder) -> None:
-    """What was measured at another time or place."""
+    """Add delays of the sensors and a wrong position of the wave gauge."""
     builder.add(
         "sensor_lag",
         None,

@@ -46,14 +46,14 @@ def noticeable_scales(
         spread: Largest measured standard deviation by motion (m, rad).
         fraction: Noticeable fraction of the restoring force.
     """
-    found = {}
+    scales = {}
     for dof, size in spread.items():
         i = DOFS.index(dof)
         m, c = float(mass[i, i]), float(stiffness[i, i])
         omega = math.sqrt(c / m) if c > 0 else 0.1
         amplitude = math.sqrt(2) * size
-        found[dof] = NoticeableScales(amplitude, omega * amplitude, fraction * max(c, m * omega**2) * amplitude, m)
-    return found
+        scales[dof] = NoticeableScales(amplitude, omega * amplitude, fraction * max(c, m * omega**2) * amplitude, m)
+    return scales
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class CatalogueBuilder:
 
     @property
     def time(self) -> float:
-        """Times, and velocities, over those of a platform of 20 000 t."""
+        """Ratio of times, and of velocities, to a platform of 20 000 t."""
         return math.sqrt(self.length)
 
     def add_linear(self, label: str, scale: float, neutral: float = 0.0) -> str:

@@ -46,14 +46,16 @@ def add_motion_effects(
         wave_variance: Largest variance of the wave elevation (m²); None: no tests in waves.
         step: Time step of simulations in waves (s).
     """
-    s, i, of = scales[dof], DOFS.index(dof) + 1, f".{dof}."
+    s, i, infix = scales[dof], DOFS.index(dof) + 1, f".{dof}."
     builder.add(
         "coulomb_friction",
         dof,
-        [builder.add_linear(f"coulomb_friction{of}force", s.force)],
+        [builder.add_linear(f"coulomb_friction{infix}force", s.force)],
         # sharp beside the motion, and yet resolved by the time step; rounded, so that it compiles for many campaigns
         shapes=(
-            builder.add_shape(f"coulomb_friction{of}speed", 2.0 ** round(math.log2(FRICTION_SPEED_SHARE * s.rate)), 1e-6, 1.0),
+            builder.add_shape(
+                f"coulomb_friction{infix}speed", 2.0 ** round(math.log2(FRICTION_SPEED_SHARE * s.rate)), 1e-6, 1.0
+            ),
         ),
         passive=True,
         telling=f"a slow static pull-out and return in {dof}: friction leaves the platform off zero",
@@ -85,7 +87,7 @@ def add_motion_effects(
     builder.add(
         "cubic_damping",
         dof,
-        [builder.add_linear(f"cubic_damping{of}coefficient", s.force / s.rate**3)],
+        [builder.add_linear(f"cubic_damping{infix}coefficient", s.force / s.rate**3)],
         passive=True,
         telling=f"decays in {dof} from twice the amplitude",
         source=CubicDamping.source,
@@ -93,27 +95,27 @@ def add_motion_effects(
     builder.add(
         "radiation_memory",
         dof,
-        [builder.add_linear(f"radiation_memory{of}strength", s.force / s.rate)],
-        shapes=(builder.add_shape(f"radiation_memory{of}frequency", *(rate / builder.time for rate in (0.6, 0.03, 4.0))),),
-        grid=tuple({f"radiation_memory{of}frequency": rate / builder.time} for rate in MEMORY_RATES),
+        [builder.add_linear(f"radiation_memory{infix}strength", s.force / s.rate)],
+        shapes=(builder.add_shape(f"radiation_memory{infix}frequency", *(rate / builder.time for rate in (0.6, 0.03, 4.0))),),
+        grid=tuple({f"radiation_memory{infix}frequency": rate / builder.time} for rate in MEMORY_RATES),
         passive=True,
         telling=f"forced oscillation in {dof} at three periods",
         source=RadiationMemory.source,
     )
-    natural = [one.period for one in scales.values()]
+    natural = [scale.period for scale in scales.values()]
     shortest = max(MIN_NATURAL_PERIOD_RATIO * min(natural), MIN_STEPS_PER_PERIOD * step, MIN_OSCILLATOR_PERIOD)
     longest = max(min(MAX_NATURAL_PERIOD_RATIO * max(natural), MAX_OSCILLATOR_PERIOD), shortest)
     builder.add(
         "hidden_oscillator",
         dof,
-        [builder.add_linear(f"hidden_oscillator{of}mass", 0.02 * s.mass)],
+        [builder.add_linear(f"hidden_oscillator{infix}mass", 0.02 * s.mass)],
         shapes=(
             builder.add_shape(
-                f"hidden_oscillator{of}period", min(max(s.period, shortest), longest), 0.8 * shortest, 2 * longest
+                f"hidden_oscillator{infix}period", min(max(s.period, shortest), longest), 0.8 * shortest, 2 * longest
             ),
-            builder.add_shape(f"hidden_oscillator{of}damping_ratio", NEUTRAL_DAMPING_RATIO, 0.002, 0.5),
+            builder.add_shape(f"hidden_oscillator{infix}damping_ratio", NEUTRAL_DAMPING_RATIO, 0.002, 0.5),
         ),
-        grid=({f"hidden_oscillator{of}period": shortest},),
+        grid=({f"hidden_oscillator{infix}period": shortest},),
         shape_finder=oscillator_period_finder(dof, shortest, longest),
         starting_values_finder=partial(oscillator_starts, dof),
         passive=True,
@@ -123,7 +125,7 @@ def add_motion_effects(
     builder.add(
         "static_offset",
         dof,
-        [builder.add_linear(f"static_offset{of}force", s.force)],
+        [builder.add_linear(f"static_offset{infix}force", s.force)],
         telling="the same test with the platform moored, and its zero taken before and after",
         source=StaticForce.source,
     )
@@ -132,9 +134,9 @@ def add_motion_effects(
         builder.add(
             "hysteresis",
             dof,
-            [builder.add_linear(f"hysteresis{of}force", s.force)],
-            shapes=(builder.add_shape(f"hysteresis{of}yield_displacement", default, 0.02 * default, 20 * default),),
-            grid=tuple({f"hysteresis{of}yield_displacement": share * default} for share in YIELD_FACTORS),
+            [builder.add_linear(f"hysteresis{infix}force", s.force)],
+            shapes=(builder.add_shape(f"hysteresis{infix}yield_displacement", default, 0.02 * default, 20 * default),),
+            grid=tuple({f"hysteresis{infix}yield_displacement": share * default} for share in YIELD_FACTORS),
             passive=True,
             telling=f"slow static cycles in {dof} at two amplitudes: the loop's area tells",
             source=Hysteresis.source,
@@ -145,21 +147,21 @@ def add_motion_effects(
             "mooring_nonlinearity",
             dof,
             [
-                builder.add_linear(f"mooring_nonlinearity{of}{name}", s.force / s.amplitude**power)
+                builder.add_linear(f"mooring_nonlinearity{infix}{name}", s.force / s.amplitude**power)
                 for name, power in names.items()
             ],
             telling=f"static offsets in {dof} to both sides, up to the largest excursion",
             source=MooringNonlinearity.source,
         )
     if dof in ("heave", "roll", "pitch"):
-        labels = [builder.add_linear(f"nonlinear_hydrostatics{of}cubic", s.force / s.amplitude**3)]
+        labels = [builder.add_linear(f"nonlinear_hydrostatics{infix}cubic", s.force / s.amplitude**3)]
         if dof == "heave":
-            labels.append(builder.add_linear(f"nonlinear_hydrostatics{of}even_quadratic", s.force / s.amplitude**2))
+            labels.append(builder.add_linear(f"nonlinear_hydrostatics{infix}even_quadratic", s.force / s.amplitude**2))
             if "pitch" in scales:
                 tilt = scales["pitch"].amplitude
-                labels.append(builder.add_linear(f"nonlinear_hydrostatics{of}pitch_squared", s.force / tilt**2))
+                labels.append(builder.add_linear(f"nonlinear_hydrostatics{infix}pitch_squared", s.force / tilt**2))
         else:
-            labels.append(builder.add_linear(f"nonlinear_hydrostatics{of}quintic", s.force / s.amplitude**5))
+            labels.append(builder.add_linear(f"nonlinear_hydrostatics{infix}quintic", s.force / s.amplitude**5))
         builder.add(
             "nonlinear_hydrostatics",
             dof,
@@ -172,15 +174,15 @@ def add_motion_effects(
         builder.add(
             "wave_drift",
             dof,
-            [builder.add_linear(f"wave_drift{of}{way}", s.force / wave_variance) for way in ways],
+            [builder.add_linear(f"wave_drift{infix}{way}", s.force / wave_variance) for way in ways],
             telling="the same irregular sea at another height: drift goes as Hs^2",
             source=WaveDrift.source,
         )
-        steady = builder.add_linear(f"wave_drift_damping{of}steady", 1.0, 1.0)
+        steady = builder.add_linear(f"wave_drift_damping{infix}steady", 1.0, 1.0)
         builder.add(
             "wave_drift_damping",
             dof,
-            [builder.add_linear(f"wave_drift_damping{of}coefficient", s.force / s.rate / wave_variance)],
+            [builder.add_linear(f"wave_drift_damping{infix}coefficient", s.force / s.rate / wave_variance)],
             grid=({steady: 1.0}, {steady: 0.0}),
             passive=True,
             telling=f"a {dof} decay in regular waves of two heights",

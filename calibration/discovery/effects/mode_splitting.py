@@ -88,9 +88,9 @@ def modes_of(values: np.ndarray, step: float, count: int) -> Modes:
     eigenvalue = np.log(np.linalg.eigvals(shift).astype(complex)) / step
     each = np.exp(np.outer(np.arange(len(values)) * step, eigenvalue))
     amplitude = np.linalg.lstsq(each, values.astype(complex), rcond=None)[0]
-    left = float(np.std(values - (each @ amplitude).real))
+    residual_rms = float(np.std(values - (each @ amplitude).real))
     upper = eigenvalue.imag > 0
-    return Modes(eigenvalue[upper], 2 * amplitude[upper], left)
+    return Modes(eigenvalue[upper], 2 * amplitude[upper], residual_rms)
 
 
 def oscillator_from_modes(eigenvalue: np.ndarray, amplitude: np.ndarray) -> OscillatorEstimate | None:
@@ -107,15 +107,15 @@ def oscillator_from_modes(eigenvalue: np.ndarray, amplitude: np.ndarray) -> Osci
     if (ratio := float((amplitude[order[0]] / amplitude[order[1]]).real)) <= 0:
         return None
     weight = ratio * square[0] / square[1]
-    own = (square[0] + weight * square[1]) / (1 + weight)
-    hull = square[0] * square[1] / own
-    share = (square.sum() - hull - own) / own
+    oscillator_square = (square[0] + weight * square[1]) / (1 + weight)
+    hull_square = square[0] * square[1] / oscillator_square
+    share = (square.sum() - hull_square - oscillator_square) / oscillator_square
     if share <= 0:
         return None
-    moved = own / (own - square)
-    both = np.column_stack([np.ones(2), 2 * np.sqrt(own) * share * (moved - 1) ** 2])
+    moved = oscillator_square / (oscillator_square - square)
+    both = np.column_stack([np.ones(2), 2 * np.sqrt(oscillator_square) * share * (moved - 1) ** 2])
     damping = np.linalg.solve(both, 2 * loss * (1 + share * moved**2))[1]
-    hull_period, period = (2 * math.pi / math.sqrt(one) for one in (hull, own))
+    hull_period, period = (2 * math.pi / math.sqrt(omega_square) for omega_square in (hull_square, oscillator_square))
     return OscillatorEstimate(hull_period, float(share), period, float(np.clip(damping, *DAMPING_RATIO_LIMITS)))
 
 
@@ -137,20 +137,20 @@ def oscillator_in_decay(
     """
     if len(values) < MIN_SAMPLES_PER_MODE * count or step > 2 * period / SAMPLES_PER_PERIOD:
         return None, 1.0
-    found = modes_of(values - values.mean(), step, 2 * count + 1)
-    here = 2 * np.pi / found.eigenvalue.imag
-    near = (np.abs(np.log(here / period)) < np.log(MAX_PERIOD_RATIO)) & (found.eigenvalue.real < 0)
-    for other in others:
-        near &= np.abs(np.log(here / other)) > MIN_PERIOD_SEPARATION
-    two = np.flatnonzero(near)[np.argsort(-np.abs(found.amplitude[near]))][:2]
-    left = found.residual_rms / max(float(np.std(values)), 1e-300)
+    modes = modes_of(values - values.mean(), step, 2 * count + 1)
+    periods = 2 * np.pi / modes.eigenvalue.imag
+    near = (np.abs(np.log(periods / period)) < np.log(MAX_PERIOD_RATIO)) & (modes.eigenvalue.real < 0)
+    for other_period in others:
+        near &= np.abs(np.log(periods / other_period)) > MIN_PERIOD_SEPARATION
+    two = np.flatnonzero(near)[np.argsort(-np.abs(modes.amplitude[near]))][:2]
+    residual_share = modes.residual_rms / max(float(np.std(values)), 1e-300)
     if len(two) < 2:
-        return None, left
-    apart = abs(float(np.diff(found.eigenvalue.imag[two])[0]))
-    widths = -float(found.eigenvalue.real[two].sum())
-    if apart < max(widths, MIN_PERIOD_SEPARATION * float(found.eigenvalue.imag[two].mean())):
-        return None, left  # one mode, whose damping or stiffness is not linear
-    return oscillator_from_modes(found.eigenvalue[two], found.amplitude[two]), left
+        return None, residual_share
+    apart = abs(float(np.diff(modes.eigenvalue.imag[two])[0]))
+    widths = -float(modes.eigenvalue.real[two].sum())
+    if apart < max(widths, MIN_PERIOD_SEPARATION * float(modes.eigenvalue.imag[two].mean())):
+        return None, residual_share  # one mode, whose damping or stiffness is not linear
+    return oscillator_from_modes(modes.eigenvalue[two], modes.amplitude[two]), residual_share
 
 
 def natural_mode(model: Model, dof: str) -> tuple[float, float]:
@@ -163,7 +163,7 @@ def natural_mode(model: Model, dof: str) -> tuple[float, float]:
 
 
 def oscillator_starts(
-    dof: str, study: "Study", place: "Point", base: Sequence[int], width: np.ndarray
+    dof: str, study: "Study", point: "Point", base: Sequence[int], width: np.ndarray
 ) -> tuple[Mapping[str, float], ...]:
     """Starting values for `HiddenOscillator`, from the two modes of a fitted decay.
 
@@ -172,29 +172,37 @@ def oscillator_starts(
     Args:
         dof: The motion.
         study: The study.
-        place: The point that coefficients are moved from.
+        point: The point that coefficients are moved from.
         base: Directions of the coefficients.
         width: Prior standard deviations of the directions (d,).
     """
-    records = [one for one in study.decay_records if one.use == "fit" and one.degree_of_freedom == dof]
-    modes = natural_modes(study.space.model(study.model, jnp.asarray(place.x)))
+    records = [record for record in study.decay_records if record.use == "fit" and record.degree_of_freedom == dof]
+    modes = natural_modes(study.space.model(study.model, jnp.asarray(point.x)))
     if not records or not np.isfinite(period := modes.of(dof)):
         return ()
-    others = [float(one) for one in modes.period if one != period]
-    said = []
+    others = [float(natural_period) for natural_period in modes.period if natural_period != period]
+    estimates = []
     for record in records:
         step = max(period / SAMPLES_PER_PERIOD, float(np.diff(record.time).max()))
         time = np.arange(record.time[0], record.time[-1], step)
         values = np.interp(time, record.time, record.values[dof])
-        said.append(oscillator_in_decay(values, step, period, others, 1 + len(record.values)))
-    best = min(((left, one) for one, left in said if one is not None), key=lambda each: each[0], default=None)
+        estimates.append(oscillator_in_decay(values, step, period, others, 1 + len(record.values)))
+    best = min(
+        ((residual_share, oscillator) for oscillator, residual_share in estimates if oscillator is not None),
+        key=lambda each: each[0],
+        default=None,
+    )
     if best is None:
         return ()
-    x = coordinates_with_period(study, place.x, base, width, dof, best[1].hull_period)
+    x = coordinates_with_period(study, point.x, base, width, dof, best[1].hull_period)
     mass = natural_mode(study.space.model(study.model, jnp.asarray(x)), dof)[1]
-    values = {label: study.value(label, x) for label, at, to in zip(study.labels, place.x, x) if at != to}
-    of = f"hidden_oscillator.{dof}."
-    about = {f"{of}mass": best[1].mass_ratio * mass, f"{of}period": best[1].period, f"{of}damping_ratio": best[1].damping_ratio}
+    values = {label: study.value(label, x) for label, before, after in zip(study.labels, point.x, x) if before != after}
+    prefix = f"hidden_oscillator.{dof}."
+    about = {
+        f"{prefix}mass": best[1].mass_ratio * mass,
+        f"{prefix}period": best[1].period,
+        f"{prefix}damping_ratio": best[1].damping_ratio,
+    }
     return (values | about,)
 
 
@@ -212,7 +220,7 @@ def coordinates_with_period(
     directions, size = study.directions[list(base)], width[list(base)]
     for _ in range(PERIOD_ITERATIONS):
         now = off(x)
-        slopes = np.array([(off(x + DIFFERENCE_STEP * one) - now) / DIFFERENCE_STEP for one in directions]) * size
+        slopes = np.array([(off(x + DIFFERENCE_STEP * direction) - now) / DIFFERENCE_STEP for direction in directions]) * size
         step = -now * slopes / max(float(slopes @ slopes), 1e-300)
         x = x + (step * size * min(1.0, MAX_STEP_DEVIATIONS / max(float(np.abs(step).max()), 1e-300))) @ directions
     return x

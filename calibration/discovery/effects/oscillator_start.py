@@ -31,8 +31,8 @@ def response(omega: np.ndarray, period: float, ratio: float) -> np.ndarray:
     References:
         Den Hartog 1956, Mechanical Vibrations, chapter 3.
     """
-    own = 2 * math.pi / period
-    spring = own**2 + 2j * ratio * own * omega
+    own_frequency = 2 * math.pi / period
+    spring = own_frequency**2 + 2j * ratio * own_frequency * omega
     return spring / (spring - omega**2)
 
 
@@ -40,15 +40,15 @@ def oscillator_period_finder(dof: str, shortest: float, longest: float) -> Shape
     """A search for the likeliest periods of `HiddenOscillator` in a motion, between two periods (s).
 
     In a linear hull, slopes scale with the oscillator's response. So one linearisation at the shortest period gives the gain at
-    all periods. What the fitted directions can explain is projected out; a refit decides.
+    all periods. The part of it that the fitted directions can explain is projected out. A refit decides.
     """
 
-    def found(study: "Study", look: "Linearisation", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
+    def periods_to_try(study: "Study", look: "Linearisation", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
         tried = shortest * PERIOD_SPACING ** np.arange(int(math.log(longest / shortest, PERIOD_SPACING)) + 1)
         omega = 2 * math.pi * study.frequency
-        there = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, shortest, NEUTRAL_DAMPING_RATIO)
+        per_response = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, shortest, NEUTRAL_DAMPING_RATIO)
         columns = np.stack(
-            [there * response(omega, period, ratio) for ratio in TRIED_DAMPING_RATIOS for period in tried], axis=1
+            [per_response * response(omega, period, ratio) for ratio in TRIED_DAMPING_RATIOS for period in tried], axis=1
         )
         rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
         along, size = projected_products(study, look, rows)
@@ -58,9 +58,9 @@ def oscillator_period_finder(dof: str, shortest: float, longest: float) -> Shape
             for ratio, of_ratio in zip(TRIED_DAMPING_RATIOS, gain.reshape(len(TRIED_DAMPING_RATIOS), -1))
             for i in highest_peaks(np.pad(of_ratio, 1)) - 1
         ]
-        of = f"hidden_oscillator.{dof}."
+        prefix = f"hidden_oscillator.{dof}."
         return tuple(
-            {f"{of}period": period, f"{of}damping_ratio": ratio} for _, period, ratio in sorted(best)[::-1][:MAX_PEAKS]
+            {f"{prefix}period": period, f"{prefix}damping_ratio": ratio} for _, period, ratio in sorted(best)[::-1][:MAX_PEAKS]
         )
 
-    return found
+    return periods_to_try

@@ -65,25 +65,30 @@ def phase_shift_start(study: "Study", look: "Linearisation", label: str, turns: 
     usual = math.sqrt(float(weight @ np.abs(along) ** 2) / motion)  # rad a unit
     tried = np.arange(about.lower, about.upper, PHASE_SPACING / usual)
 
-    def left(value: float) -> float:
+    def deviance(value: float) -> float:
         residual = look.residual.reshape(-1, 2).copy()
         change = along * np.expm1(1j * phase * value) / (1j * phase)
         residual[waves] += np.stack([change.real, change.imag], axis=1)
         return float(minus_two_log_likelihood(study, residual.ravel())[study.used].sum())
 
-    gain = left(0.0) - np.array([left(value) for value in tried])
+    gain = deviance(0.0) - np.array([deviance(value) for value in tried])
     best = highest_peaks(gain)[:1]
     far = best[np.abs(tried[best]) * usual > MIN_PHASE_SHIFT]
     return PhaseShiftStart({label: float(tried[far[0]])}, float(gain[far[0]])) if far.size else None
 
 
 def phase_shift_factor(study: "Study", turns: PhasePerUnit, value: float) -> np.ndarray:
-    """Change of the Fourier lines by a phase shift, over the change that slopes at no shift predict (complex; l,).
+    """Change of the Fourier lines by a phase shift, over the change that the slopes predict.
+
+    The slopes are those at no shift.
 
     Args:
         study: The study.
         turns: Phase per unit (rad) by circular frequency and water.
         value: The parameter's value.
+
+    Returns:
+        Complex factors of the lines (l,).
     """
     factor = np.ones(len(study.frequency), complex)
     waves = study.first_order

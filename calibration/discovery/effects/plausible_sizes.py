@@ -72,7 +72,7 @@ def plausible_sizes(
         KeyError: No rule is about a label.
     """
     case, parameters, reaches = Case(model, scales, wave), {}, {}
-    whole = with_effects(model, [label for one in candidates if one.load is None for label in one.amplitudes])
+    whole = with_effects(model, [label for candidate in candidates if candidate.load is None for label in candidate.amplitudes])
     for candidate in candidates:
         about = candidate.load or whole
         for label in candidate.amplitudes:
@@ -83,9 +83,9 @@ def plausible_sizes(
     sizes = {label: _size(parameters[label].neutral, reach) for label, reach in reaches.items()}
     problems: list[Problem] = []
     for key in sorted(stated, key=_closeness):
-        found = _stated(key, stated[key], parameters, reaches)
-        problems += [found] if isinstance(found, Problem) else []
-        sizes |= found if isinstance(found, dict) else {}
+        outcome = _stated(key, stated[key], parameters, reaches)
+        problems += [outcome] if isinstance(outcome, Problem) else []
+        sizes |= outcome if isinstance(outcome, dict) else {}
     if problems:
         raise InputError(source, problems)
     return sizes
@@ -107,22 +107,22 @@ def _reach(case: Case, candidate: Candidate, label: str, parameter: Parameter) -
 
 
 def _closeness(key: str) -> tuple[bool, int, bool]:
-    """Order in which keys of `plausible` are read: the one that is closest to a label comes last."""
+    """Order in which keys of `plausible` are read: the closest to a label comes last."""
     return key not in STATED_SIZES, key.count("."), "*" not in key
 
 
 def _stated(
     key: str, value: str | float, parameters: Mapping[str, Parameter], reaches: Mapping[str, Reach]
 ) -> dict[str, PlausibleSize] | Problem:
-    """Ranges that one key states, or what is wrong with it."""
+    """Ranges that one key states, or the problem with it."""
     labels, where, size = [label for label in parameters if is_about(key, label)], f"plausible.{key}", read_stated_size(value)
     if not labels:
         mine = [label for label in parameters if label.split(".")[0] == key.split(".")[0]]
         if key in STATED_SIZES or not mine:
             return {}
         return Problem(where, f"a parameter of this effect ({', '.join(mine)})", repr(key), suggest(key, mine))
-    found = {label: half for label in labels for half in _half_width(size, parameters[label], reaches[label])}
-    if not found:
+    half_widths = {label: half for label in labels for half in _half_width(size, parameters[label], reaches[label])}
+    if not half_widths:
         units = dict.fromkeys(parameters[label].unit for label in labels)
         shares = ["%"] if any(reaches[label].whole is not None for label in labels) else []
         return Problem(where, f"a quantity in {' or '.join([*units, *shares])}", shown(value))
@@ -133,12 +133,15 @@ def _stated(
             STATED.format(key),
             True,
         )
-        for label, half in found.items()
+        for label, half in half_widths.items()
     }
 
 
 def _half_width(size: StatedSize, parameter: Parameter, reach: Reach) -> Iterator[float]:
-    """Distance from the neutral value (SI) that a stated size gives a parameter; nothing where it is in another unit."""
+    """Distance (SI) from the neutral value that a stated size gives a parameter.
+
+    Yields nothing where the size is in another unit, or is a share and there is no whole.
+    """
     if size.share:
         yield from () if reach.whole is None else (size.value * reach.whole,)
     elif size.unit is None or size.unit.powers == parse_unit(parameter.unit).powers:

@@ -25,7 +25,7 @@ MIN_OFFSET, MIN_TILT = 0.02, math.radians(2.0)  # of the length, rad: offsets th
 
 
 class Seas(NamedTuple):
-    """What plausible sizes need to know of the waves.
+    """Waves of the tests, as far as plausible sizes depend on them.
 
     Attributes:
         peak_period: Peak period (s) of the highest sea.
@@ -45,7 +45,7 @@ class Seas(NamedTuple):
         wavy = [(r.time, r.wave) for r in records if r.kind in IN_WAVES and r.use != "ignore" and r.wave is not None]
         if not wavy:
             return None
-        time, wave = max(wavy, key=lambda one: float(np.var(one[1])))
+        time, wave = max(wavy, key=lambda series: float(np.var(series[1])))
         return cls(record_peak_period(wave, float(np.median(np.diff(time))), low, cutoff))
 
 
@@ -104,7 +104,10 @@ class Case(NamedTuple):
         return float(water.density) * float(water.gravity), 2 * math.pi / self.seas.peak_period
 
     def hull_extent(self, axis: int) -> tuple[float, float]:
-        """Lowest and highest coordinate (m) of the hull along an axis, half the length from the reference point at least."""
+        """Lowest and highest coordinate (m) of the hull along an axis.
+
+        Both are at least half the length from the reference point.
+        """
         parts = self.model.hull.elements
         ends = [np.asarray(parts.start)[axis], np.asarray(parts.start + parts.axis * parts.length)[axis]]
         reach = np.concatenate([*ends, [-self.length / 2, self.length / 2]])
@@ -159,7 +162,10 @@ def surge_force(case: Case, label: str) -> float:
 
 
 def offset_force(case: Case, label: str) -> float:
-    """Force (N, N m) of an offset by the largest excursion, or by `MIN_OFFSET`, `MIN_TILT` where that is more."""
+    """Force (N, N m) of an offset by the largest excursion, or by the smallest offset if that is more.
+
+    The smallest offset is `MIN_OFFSET` of the length in translations, and `MIN_TILT` in rotations.
+    """
     motion, least = case.motion(dof_of(label)), MIN_TILT if is_rotation(label) else MIN_OFFSET * case.length
     return motion.stiffness * max(motion.excursion, least)
 
@@ -178,17 +184,26 @@ def _geometric_mean(case: Case, label: str, quantity: str) -> float:
 
 
 def entry_mass(case: Case, label: str) -> float:
-    """Moving mass (kg, kg m, kg m²) of an entry such as added_mass.A15, as the geometric mean of both motions."""
+    """Moving mass (kg, kg m, kg m²) of a matrix entry: geometric mean of both motions.
+
+    The label names the entry, such as added_mass.A15.
+    """
     return _geometric_mean(case, label, "mass")
 
 
 def entry_stiffness(case: Case, label: str) -> float:
-    """Stiffness (N/m, N, N m/rad) of an entry such as stiffness.C35, as the geometric mean of both motions."""
+    """Stiffness (N/m, N, N m/rad) of a matrix entry: geometric mean of both motions.
+
+    The label names the entry, such as stiffness.C35.
+    """
     return _geometric_mean(case, label, "stiffness")
 
 
 def entry_damping(case: Case, label: str) -> float:
-    """Critical damping (N s/m, N s, N m s/rad) of an entry such as coupled_damping.B15, as the geometric mean."""
+    """Critical damping (N s/m, N s, N m s/rad) of a matrix entry: geometric mean of both motions.
+
+    The label names the entry, such as coupled_damping.B15.
+    """
     return _geometric_mean(case, label, "critical")
 
 
@@ -217,6 +232,9 @@ def total_reflection(case: Case, label: str) -> float:
 
 
 def aranha_damping(case: Case, label: str) -> float:
-    """Wave-drift damping (N s/m³, N s/(m rad)) of waves that are all sent back: 4 omega/g times the drift coefficient."""
+    """Wave-drift damping (N s/m³, N s/(m rad)) of waves that are all sent back.
+
+    It is 4 omega/g times the drift coefficient, and in rotations times the lever, half the length.
+    """
     lever = case.length / 2 if is_rotation(label) else 1.0
     return 4 * case.waves()[1] / float(case.model.environment.gravity) * total_reflection(case, label) * lever

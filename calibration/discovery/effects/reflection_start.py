@@ -12,7 +12,7 @@ from jaxhydro.water.wave_reflection import DELAY, MAX_DELAY, SEEN
 
 DELAY_SPACING = 0.05  # s, between the delays that are compared
 # waves that the gauge did not measure, or did
-ZERO_DELAY_GRID: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: seen} for seen in (0.0, 1.0))
+ZERO_DELAY_GRID: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: measured} for measured in (0.0, 1.0))
 
 
 def reflection_delays(study: Study, look: Linearisation, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
@@ -31,14 +31,14 @@ def reflection_delays(study: Study, look: Linearisation, slopes: np.ndarray) -> 
     product, power, begin = np.zeros(later.size), 0.0, sum(2 * len(cut.take) for cut in study.cuts[: -len(study.seas)])
     for record, cut in zip(study.seas, study.cuts[-len(study.seas) :]):
         rows = slice(begin, begin := begin + 2 * len(cut.take))
-        left, there = (one[rows].reshape(-1, 2) @ [1, 1j] for one in (look.residual, slopes))
+        residual_lines, slope_lines = (values[rows].reshape(-1, 2) @ [1, 1j] for values in (look.residual, slopes))
         duration = record.measured.shape[-1] * float(record.times[1] - record.times[0])
         line = cut.take % cut.lines
         share = weight[rows][::2] * study.first_order[rows.start // 2 : rows.stop // 2]
         both = np.zeros(cut.lines, complex)
-        np.add.at(both, line, share * np.conj(there) * left)
+        np.add.at(both, line, share * np.conj(slope_lines) * residual_lines)
         for i in np.flatnonzero(both):
             product += (both[i] * np.exp(2j * np.pi * i / duration * later)).real
-        power += float(share @ np.abs(there) ** 2)
+        power += float(share @ np.abs(slope_lines) ** 2)
     gain = product**2 / max(power, 1e-300)
     return tuple({DELAY: float(later[i])} for i in highest_peaks(gain))

@@ -39,7 +39,10 @@ def _share(below: float, above: float, whole: Quantity, source: str) -> Rule:
 
 
 def _entry(share: float, whole: Quantity, source: str) -> Rule:
-    """A share of a reference quantity for an entry of a matrix: upwards on the diagonal, either way beside it."""
+    """Share of a reference quantity for an entry of a matrix.
+
+    On the diagonal the size goes upwards only, elsewhere either way.
+    """
 
     def rule(case: Case, label: str) -> Reach:
         i, j = row_and_column(label)
@@ -55,12 +58,21 @@ def _table(deviation: float) -> Rule:
 
 
 def _froude(size: float, power: float, source: str) -> Rule:
-    """A size of a platform of 20 000 t, either way, that grows with a power of its length: 1 of a length, 1/2 of a time."""
+    """Distance either way that grows with a power of the platform's length.
+
+    Args:
+        size: Distance for a platform of 20 000 t (SI).
+        power: Power of the length: 1 for lengths, 1/2 for times.
+        source: Source of the range.
+    """
     return lambda case, label: Reach(-size * case.size**power, size * case.size**power, None, source)
 
 
 def _hull(axis: int, source: str) -> Rule:
-    """A coordinate within the hull, or a little beyond: a point at the keel or on a mast is not at the end of the range."""
+    """Coordinate within the hull, or a little beyond.
+
+    A point at the keel or on a mast is then not at the end of the range.
+    """
 
     def rule(case: Case, label: str) -> Reach:
         low, high = case.hull_extent(axis)

@@ -25,47 +25,52 @@ MIN_COHERENCE = 0.5  # fraction of the force, to be mentioned
 
 QuantityOfForce = Callable[["RecoveredForce"], np.ndarray]
 MOTION: dict[str, QuantityOfForce] = {
-    "velocity": lambda one: one.velocity,
-    "position": lambda one: one.position,
-    "acceleration": lambda one: one.acceleration,
+    "velocity": lambda recovered: recovered.velocity,
+    "position": lambda recovered: recovered.position,
+    "acceleration": lambda recovered: recovered.acceleration,
 }
 
 
-def test_kind(one: RecoveredForce) -> str:
-    """decay or waves"""
-    return "decay" if one.test.kind == "decay" else "waves"
+def test_kind(recovered: RecoveredForce) -> str:
+    """Kind of a force's test: decay or waves."""
+    return "decay" if recovered.test.kind == "decay" else "waves"
 
 
-def motion_frequency(one: RecoveredForce) -> float:
+def motion_frequency(recovered: RecoveredForce) -> float:
     """Frequency (Hz) of a motion: standard deviation of its velocity over that of its position, over 2 pi."""
-    return float(np.std(one.velocity[one.inside]) / max(np.std(one.position[one.inside]), 1e-300)) / (2 * np.pi)
+    inside = recovered.inside
+    return float(np.std(recovered.velocity[inside]) / max(np.std(recovered.position[inside]), 1e-300)) / (2 * np.pi)
 
 
-def bands_in(one: RecoveredForce) -> dict[str, tuple[float, float]]:
+def bands_in(recovered: RecoveredForce) -> dict[str, tuple[float, float]]:
     """Frequency bands (Hz) of a force, by name.
 
     In a decay around the motion's own frequency, in waves around that of the waves.
     """
-    if one.test.wave is None:
-        own = motion_frequency(one)
-        return {"slower": (0.0, 0.5 * own), "own": (0.5 * own, 1.5 * own), "higher": (1.5 * own, np.inf)}
-    low, high = bands_of("wave", record_peak_period(one.test.wave, one.test.step))["wave_frequency"]
+    if recovered.test.wave is None:
+        own_frequency = motion_frequency(recovered)
+        return {
+            "slower": (0.0, 0.5 * own_frequency),
+            "own": (0.5 * own_frequency, 1.5 * own_frequency),
+            "higher": (1.5 * own_frequency, np.inf),
+        }
+    low, high = bands_of("wave", record_peak_period(recovered.test.wave, recovered.test.step))["wave_frequency"]
     return {"low_frequency": (0.0, low), "wave_frequency": (low, high), "higher": (high, np.inf)}
 
 
-def in_bands(one: RecoveredForce) -> dict[str, float]:
+def in_bands(recovered: RecoveredForce) -> dict[str, float]:
     """Mean square of a force (N², (N m)²) in its mean and in bands."""
-    force = one.force[one.inside]
-    frequency, power = signal.periodogram(force, 1 / one.test.step, "hann", detrend="constant")
+    force = recovered.force[recovered.inside]
+    frequency, power = signal.periodogram(force, 1 / recovered.test.step, "hann", detrend="constant")
     power = power * float(np.var(force)) / max(float(power.sum()), 1e-300)
-    bands = bands_in(one)
+    bands = bands_in(recovered)
     within = {name: float(power[(frequency >= a) & (frequency < b)].sum()) for name, (a, b) in bands.items()}
     return {"mean": float(force.mean()) ** 2, **within}
 
 
 def shares_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
     """Fractions of the mean square in the mean and in bands, over some tests."""
-    each = [(len(one.force), in_bands(one)) for one in forces]
+    each = [(len(recovered.force), in_bands(recovered)) for recovered in forces]
     sums = {name: sum(n * row[name] for n, row in each) for name in each[0][1]}
     total = sum(sums.values())
     return {name: value / total if total > 0 else 0.0 for name, value in sums.items()}
@@ -87,41 +92,48 @@ def force_coherence(
     References:
         Bendat and Piersol 2010, Random Data, section 6.1.
     """
-    cross, own, other, explained, segments = 0j, 0.0, 0.0, 0.0, 0
-    for one in forces:
-        count = len(one.force[one.inside])
-        if one.test.wave is None:
-            size = int(min(CYCLES_PER_SEGMENT / max(motion_frequency(one), 1e-9) / one.test.step, count))
+    cross, force_power, quantity_power, explained, segments = 0j, 0.0, 0.0, 0.0, 0
+    for recovered in forces:
+        count = len(recovered.force[recovered.inside])
+        if recovered.test.wave is None:
+            size = int(min(CYCLES_PER_SEGMENT / max(motion_frequency(recovered), 1e-9) / recovered.test.step, count))
         else:
-            size = int(min(SEGMENT / one.test.step, count / 8))
+            size = int(min(SEGMENT / recovered.test.step, count / 8))
         if size < 8 or count < 8:
             continue
-        rows = (values(one)[one.inside], one.force[one.inside])
-        options = {"fs": 1 / one.test.step, "window": "hann", "nperseg": size, "detrend": "constant"}
+        rows = (values(recovered)[recovered.inside], recovered.force[recovered.inside])
+        options = {"fs": 1 / recovered.test.step, "window": "hann", "nperseg": size, "detrend": "constant"}
         frequency, both = signal.csd(*rows, **options)
         u, f = (signal.welch(row, **options)[1] for row in rows)
-        low, high = limits(one)
+        low, high = limits(recovered)
         asked = (frequency >= low) & (frequency < high)
         inside = asked & (u > 1e-9 * u.max())
-        cross, own, other = cross + both[inside].sum(), own + f[asked].sum(), other + u[inside].sum()
+        cross += both[inside].sum()
+        force_power += f[asked].sum()
+        quantity_power += u[inside].sum()
         explained += float((np.abs(both[inside]) ** 2 / u[inside]).sum())
         segments += 2 * count // size - 1
-    if segments < MIN_SEGMENTS or not own > 0 or not other > 0:
+    if segments < MIN_SEGMENTS or not force_power > 0 or not quantity_power > 0:
         return None
-    return ForceCoherence(explained / own, float(np.angle(cross)), float(cross.real / np.sqrt(own * other)))
+    return ForceCoherence(
+        explained / force_power, float(np.angle(cross)), float(cross.real / np.sqrt(force_power * quantity_power))
+    )
 
 
 def coherences(forces: Sequence[RecoveredForce]) -> dict[str, ForceCoherence]:
     """Relation of a force to the motion, and in waves to the elevation and its squared envelope."""
     coherence = {name: force_coherence(forces, values, lambda _: (0.0, np.inf)) for name, values in MOTION.items()}
-    if (wavy := [one for one in forces if one.test.wave is not None]) and len(wavy) == len(forces):
-        half = {test.id: 0.5 / record_peak_period(np.asarray(test.wave), test.step) for test in (one.test for one in wavy)}
+    if (wavy := [recovered for recovered in forces if recovered.test.wave is not None]) and len(wavy) == len(forces):
+        half = {
+            test.id: 0.5 / record_peak_period(np.asarray(test.wave), test.step)
+            for test in (recovered.test for recovered in wavy)
+        }
         coherence["elevation"] = force_coherence(
-            wavy, lambda one: np.asarray(one.test.wave), lambda one: (half[one.test.id], np.inf)
+            wavy, lambda recovered: np.asarray(recovered.test.wave), lambda recovered: (half[recovered.test.id], np.inf)
         )
-        envelope: QuantityOfForce = lambda one: squared_envelope(np.asarray(one.test.wave), one.test.step)  # noqa: E731
-        coherence["squared_envelope"] = force_coherence(wavy, envelope, lambda one: (0.0, half[one.test.id]))
-    return {name: one for name, one in coherence.items() if one is not None}
+        envelope: QuantityOfForce = lambda recovered: squared_envelope(np.asarray(recovered.test.wave), recovered.test.step)  # noqa: E731
+        coherence["squared_envelope"] = force_coherence(wavy, envelope, lambda recovered: (0.0, half[recovered.test.id]))
+    return {name: relation for name, relation in coherence.items() if relation is not None}
 
 
 def _power(pairs: Sequence[tuple[float, float]], ratio: float) -> float | None:
@@ -138,19 +150,19 @@ def growth_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
     With the motion's amplitude over cycles of decays; with significant wave height over tests, in every band.
     """
     cycles, exponents = [], {}
-    for one in forces:
-        n = max(round(1 / max(motion_frequency(one), 1e-9) / one.test.step), 4)
-        if test_kind(one) != "decay":
+    for recovered in forces:
+        n = max(round(1 / max(motion_frequency(recovered), 1e-9) / recovered.test.step), 4)
+        if test_kind(recovered) != "decay":
             continue
-        motion, force = one.position[one.inside], one.force[one.inside]
+        motion, force = recovered.position[recovered.inside], recovered.force[recovered.inside]
         rows = [(float(np.std(motion[i : i + n])), float(np.std(force[i : i + n]))) for i in range(0, len(force) - n + 1, n)]
-        cycles += [row for row in rows if row[1] > MIN_FORCE_OVER_NOISE * one.noise and row[0] > 0]
+        cycles += [row for row in rows if row[1] > MIN_FORCE_OVER_NOISE * recovered.noise and row[0] > 0]
     if len(cycles) >= MIN_SEGMENTS and (power := _power(cycles, MIN_SIZE_RATIO["decay"])) is not None:
         exponents["amplitude"] = power
     seas = [
-        (wave_height(one.test.wave, irregular=True), in_bands(one))
-        for one in forces
-        if one.test.kind == "irregular" and one.test.wave is not None
+        (wave_height(recovered.test.wave, irregular=True), in_bands(recovered))
+        for recovered in forces
+        if recovered.test.kind == "irregular" and recovered.test.wave is not None
     ]
     for band in seas[0][1] if seas else ():
         pairs = [(height, row[band] ** 0.5) for height, row in seas if row[band] > 0 and height > 0]
@@ -161,14 +173,14 @@ def growth_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
 
 def described(motion: str, forces: Sequence[RecoveredForce], law: Law) -> LatentForce:
     """Latent force of a motion over all tests; the largest one of a fitted test is plotted."""
-    kinds = {name: [one for one in forces if test_kind(one) == name] for name in ("decay", "waves")}
-    visible = {name: rows for name, rows in kinds.items() if any(one.visible for one in rows)}
+    kinds = {name: [recovered for recovered in forces if test_kind(recovered) == name] for name in ("decay", "waves")}
+    visible = {name: rows for name, rows in kinds.items() if any(recovered.visible for recovered in rows)}
     rms = {
-        name: float(np.sqrt(np.mean(np.concatenate([one.force[one.inside] ** 2 for one in rows]))))
+        name: float(np.sqrt(np.mean(np.concatenate([recovered.force[recovered.inside] ** 2 for recovered in rows]))))
         for name, rows in visible.items()
     }
-    fitted = [one for one in forces if one.test.use == "fit"] or list(forces)
-    largest = max(fitted, key=lambda one: one.root_mean_square)
+    fitted = [recovered for recovered in forces if recovered.test.use == "fit"] or list(forces)
+    largest = max(fitted, key=lambda recovered: recovered.root_mean_square)
     measured = largest.test.measured[motion]
     made = LatentForce(
         motion,
@@ -185,13 +197,15 @@ def described(motion: str, forces: Sequence[RecoveredForce], law: Law) -> Latent
     return replace(made, words=sentence(made))
 
 
-def _shown(one: RecoveredForce, law: Law) -> ForceExcerpt:
-    names, some = [term.kind for term in law.terms], one.inside
-    wave, follows = one.test.wave, np.zeros(0)
+def _shown(recovered: RecoveredForce, law: Law) -> ForceExcerpt:
+    names, inside = [term.kind for term in law.terms], recovered.inside
+    wave, follows = recovered.test.wave, np.zeros(0)
     if names:
-        follows = columns_of(one, law.v0, law.pace)[:, names] @ np.array([term.coefficient for term in law.terms])
-    beside, values = ("velocity", one.velocity) if wave is None else ("wave", wave)
-    return ForceExcerpt(one.test.id, one.test.time[some], one.force[some], follows, beside, values[some])
+        follows = columns_of(recovered, law.v0, law.pace)[:, names] @ np.array([term.coefficient for term in law.terms])
+    beside, values = ("velocity", recovered.velocity) if wave is None else ("wave", wave)
+    return ForceExcerpt(
+        recovered.test.id, recovered.test.time[inside], recovered.force[inside], follows, beside, values[inside]
+    )
 
 
 BAND_WORDS = {
@@ -205,26 +219,30 @@ BAND_WORDS = {
 WAVE_WORDS = {"elevation": "the wave elevation", "squared_envelope": "the squared wave envelope"}
 
 
-def sentence(one: LatentForce) -> str:
+def sentence(latent: LatentForce) -> str:
     """A latent force in a sentence."""
-    said, where = [], {"decay": "in decays", "waves": "in waves"}
-    for name, rms in one.rms.items():
-        band, share = max(one.shares[name].items(), key=lambda item: item[1])
-        said.append(f"{quantity(rms, None, one.unit)} rms {where[name]}, {percent(share)} of its square {BAND_WORDS[band]}")
+    phrases, where = [], {"decay": "in decays", "waves": "in waves"}
+    for name, rms in latent.rms.items():
+        band, share = max(latent.shares[name].items(), key=lambda item: item[1])
+        phrases.append(
+            f"{quantity(rms, None, latent.unit)} rms {where[name]}, {percent(share)} of its square {BAND_WORDS[band]}"
+        )
     with_what = []
-    for name, rows in one.coherence.items():
+    for name, rows in latent.coherence.items():
         motion = max((k for k in MOTION if k in rows), key=lambda k: round(abs(rows[k].correlation), 1), default=None)
         named = [k for k in WAVE_WORDS if k in rows and rows[k].coherence > MIN_COHERENCE]
         if motion is not None and abs(rows[motion].correlation) > MIN_COHERENCE:
             against = "against" if rows[motion].correlation < 0 else "with"
             with_what.append(f"{where[name]} mostly {against} the {motion} (correlation {number(rows[motion].correlation, 2)})")
         with_what += [f"coherent with {WAVE_WORDS[k]} ({number(rows[k].coherence, 2)})" for k in named]
-    main = max(one.shares["waves"].items(), key=lambda row: row[1])[0] if "waves" in one.shares else ""
-    told = {name: p for name, p in one.growth.items() if name in ("amplitude", f"significant_height.{main}")}
+    main = max(latent.shares["waves"].items(), key=lambda row: row[1])[0] if "waves" in latent.shares else ""
+    told = {name: p for name, p in latent.growth.items() if name in ("amplitude", f"significant_height.{main}")}
     grows = [f"it grows as the power {number(p, 2)} of the {_size(name)}" for name, p in told.items()]
-    parts = [f"{one.motion.capitalize()}: the model lacks a {'moment' if one.unit == 'N m' else 'force'} of {listed(said)}"]
+    parts = [
+        f"{latent.motion.capitalize()}: the model lacks a {'moment' if latent.unit == 'N m' else 'force'} of {listed(phrases)}"
+    ]
     parts += [", ".join(with_what)] if with_what else []
-    return "; ".join([*parts, *grows, law_in_words(one.law, one.unit)]) + "."
+    return "; ".join([*parts, *grows, law_in_words(latent.law, latent.unit)]) + "."
 
 
 def _size(name: str) -> str:
@@ -233,18 +251,18 @@ def _size(name: str) -> str:
 
 
 def law_in_words(law: Law, unit: str) -> str:
-    """A force law and what it explains, in words."""
+    """A force law and the share that it explains, in words."""
     if not law.terms:
         return f"no law of up to three terms explains it (the best {percent(law.share)} of it in {law.checked or 'the tests'})"
-    sizes = [(one, f"{number(one.coefficient, 3)} {readable_unit(one.unit)}") for one in law.terms]
-    parts = [f"({size}) {_term(one, law)}".removesuffix(" 1") for one, size in sizes]
+    sizes = [(term, f"{number(term.coefficient, 3)} {readable_unit(term.unit)}") for term in law.terms]
+    parts = [f"({size}) {_term(term, law)}".removesuffix(" 1") for term, size in sizes]
     text, speed = " + ".join(parts), "rad/s" if unit == "N m" else "m/s"
     v0 = f", v0 = {number(law.v0, 2)} {speed}" if any("v0" in term.name for term in law.terms) else ""
     return f"{text} explains {percent(law.share)} of it in {law.checked}{v0}"
 
 
-def _term(one: LawTerm, law: Law) -> str:
+def _term(term: LawTerm, law: Law) -> str:
     """Name of a term; for lagged velocity with its time constant."""
-    if one.kind not in LAGGED_TERMS:
-        return one.name
-    return f"v lagged by a time constant of {number(LAG_RATIOS[one.kind - LAGGED_TERMS.start] / law.pace, 2)} s"
+    if term.kind not in LAGGED_TERMS:
+        return term.name
+    return f"v lagged by a time constant of {number(LAG_RATIOS[term.kind - LAGGED_TERMS.start] / law.pace, 2)} s"

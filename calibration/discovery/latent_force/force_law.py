@@ -105,26 +105,26 @@ def lagged(velocity: np.ndarray, step: float, constant: float) -> np.ndarray:
     return np.fft.irfft(np.fft.rfft(velocity) / (1 + 1j * omega * constant), len(velocity))
 
 
-def columns_of(one: RecoveredForce, slow: float, pace: float, without: bool = False) -> np.ndarray:
+def columns_of(recovered: RecoveredForce, slow: float, pace: float, without: bool = False) -> np.ndarray:
     """Terms of the library in one test (n, k), through the force's filter.
 
     Terms of the wave are zero in still water.
 
     Args:
-        one: The force of the test.
+        recovered: The force of the test.
         slow: Velocity scale of friction (m/s, rad/s).
         pace: Circular frequency of the motion (rad/s).
         without: Whether terms follow the simulated motion (instruments) rather than the measured one.
     """
-    (x, v), step = one.simulated if without else (one.position, one.velocity), one.test.step
+    (x, v), step = recovered.simulated if without else (recovered.position, recovered.velocity), recovered.test.step
     rows = [np.ones_like(x), x, v, np.abs(v) * v, x**3, np.tanh(v / slow), x * np.abs(x), x**2, v**3]
     rows += [lagged(v, step, lag / pace) for lag in LAG_RATIOS]
-    if one.test.wave is None:
+    if recovered.test.wave is None:
         rows += [np.zeros_like(x)] * len(WAVE_TERMS)
     else:
-        eta, square = one.test.wave - one.test.wave.mean(), squared_envelope(one.test.wave, step)
+        eta, square = recovered.test.wave - recovered.test.wave.mean(), squared_envelope(recovered.test.wave, step)
         rows += [square, quarter_period_later(square), eta, quarter_period_later(eta)]
-    return np.stack([one.through_filter(row)[one.inside] for row in rows], axis=1)
+    return np.stack([recovered.through_filter(row)[recovered.inside] for row in rows], axis=1)
 
 
 class RegressionBlock(NamedTuple):
@@ -167,26 +167,26 @@ def best_terms(products: np.ndarray, size: int) -> tuple[tuple[int, ...], np.nda
     scale = np.sqrt(np.maximum(np.diag(products), 1e-300))
     unit = products / np.outer(scale, scale)
     usable = [i for i in range(len(scale) - 1) if scale[i] > 1e-9 * scale[:-1].max()]
-    sets = np.array([some for some in combinations(usable, size) if sum(i in LAGGED_TERMS for i in some) < 2])
+    sets = np.array([terms for terms in combinations(usable, size) if sum(i in LAGGED_TERMS for i in terms) < 2])
     if not len(sets):
         return (), np.zeros(0)
     gram = unit[sets[:, :, None], sets[:, None, :]] + 1e-9 * np.eye(size)
     onto = unit[sets, -1]
     solutions = np.linalg.solve(gram, onto[..., None])[..., 0]
-    left = np.where(np.abs(solutions).max(axis=1) < MAX_TERM_RATIO, 1 - (solutions * onto).sum(axis=1), np.inf)
-    if not np.isfinite(left).any():
+    remainder = np.where(np.abs(solutions).max(axis=1) < MAX_TERM_RATIO, 1 - (solutions * onto).sum(axis=1), np.inf)
+    if not np.isfinite(remainder).any():
         return (), np.zeros(0)
-    i = int(np.flatnonzero(left <= (1 + SIMPLER_LAW_MARGIN) * left.min() + 1e-4)[0])
+    i = int(np.flatnonzero(remainder <= (1 + SIMPLER_LAW_MARGIN) * remainder.min() + 1e-4)[0])
     return tuple(int(k) for k in sets[i]), solutions[i] * scale[-1] / scale[sets[i]]
 
 
 def explained_share(parts: Iterable[RegressionBlock], chosen: Sequence[int], coefficients: np.ndarray) -> float:
     """Fraction of the force's mean square that a law explains; negative where it makes it larger."""
-    left = total = 0.0
-    for one in parts:
-        left += one.weight * float(((one.force - one.terms[:, list(chosen)] @ coefficients) ** 2).sum())
-        total += one.weight * float((one.force**2).sum())
-    return 1 - left / total if total > 0 else 0.0
+    remainder = total = 0.0
+    for block in parts:
+        remainder += block.weight * float(((block.force - block.terms[:, list(chosen)] @ coefficients) ** 2).sum())
+        total += block.weight * float((block.force**2).sum())
+    return 1 - remainder / total if total > 0 else 0.0
 
 
 def law_of(motion: str, forces: Sequence[RecoveredForce]) -> Law:
@@ -195,26 +195,28 @@ def law_of(motion: str, forces: Sequence[RecoveredForce]) -> Law:
     Fitted tests give the terms and coefficients, held-out tests the number of terms. Without held-out tests with a visible
     force, blocks of the fitted ones are left out in turn.
     """
-    fitted = [one for one in forces if one.test.use == "fit" and one.visible]
-    waves = any(one.test.wave is not None for one in fitted)
+    fitted = [recovered for recovered in forces if recovered.test.use == "fit" and recovered.visible]
+    waves = any(recovered.test.wave is not None for recovered in fitted)
     kinds = [*STILL_WATER_TERMS, *(WAVE_TERMS if waves else ())]
     if not fitted:
         return Law((), 0.0, 0.0, "")
-    slow = FRICTION_SPEED_OVER_RMS * float(np.median([np.std(one.velocity[one.inside]) for one in fitted]))
+    slow = FRICTION_SPEED_OVER_RMS * float(np.median([np.std(recovered.velocity[recovered.inside]) for recovered in fitted]))
     moved, moving = (
-        sum(float(np.var(values(one)[one.inside])) for one in fitted)
-        for values in (lambda one: one.position, lambda one: one.velocity)
+        sum(float(np.var(values(recovered)[recovered.inside])) for recovered in fitted)
+        for values in (lambda recovered: recovered.position, lambda recovered: recovered.velocity)
     )
     pace = (moving / max(moved, 1e-300)) ** 0.5
 
-    def part(one: RecoveredForce) -> RegressionBlock:
-        force, terms = one.force[one.inside], columns_of(one, slow, pace)[:, : len(kinds)]
-        instruments = columns_of(one, slow, pace, without=True)[:, : len(kinds)]
-        return RegressionBlock(force, terms, instruments, 1 / (len(force) * (one.root_mean_square**2 + 9 * one.noise**2)))
+    def part(recovered: RecoveredForce) -> RegressionBlock:
+        force, terms = recovered.force[recovered.inside], columns_of(recovered, slow, pace)[:, : len(kinds)]
+        instruments = columns_of(recovered, slow, pace, without=True)[:, : len(kinds)]
+        return RegressionBlock(
+            force, terms, instruments, 1 / (len(force) * (recovered.root_mean_square**2 + 9 * recovered.noise**2))
+        )
 
-    whole = [part(one) for one in fitted]
-    every, across = (np.sum(some, axis=0) for some in zip(*((one.products(), one.across()) for one in whole)))
-    held = [part(one) for one in forces if one.test.use == "holdout" and one.visible]
+    whole = [part(recovered) for recovered in fitted]
+    every, across = (np.sum(products, axis=0) for products in zip(*((block.products(), block.across()) for block in whole)))
+    held = [part(recovered) for recovered in forces if recovered.test.use == "holdout" and recovered.visible]
     folds = [(across, held)] if held else list(_left_out(whole))
     law = Law((), 0.0, 0.0, "held-out tests" if held else "blocks left out in turn")
     for size in range(1, MAX_TERMS + 1):
@@ -222,7 +224,7 @@ def law_of(motion: str, forces: Sequence[RecoveredForce]) -> Law:
         if not chosen:
             continue
         coefficients = _solved(across, chosen)
-        share = float(np.mean([explained_share(asked, chosen, _solved(given, chosen)) for given, asked in folds]))
+        share = float(np.mean([explained_share(checked, chosen, _solved(training, chosen)) for training, checked in folds]))
         if share >= max(MIN_EXPLAINED_SHARE, law.share + MIN_SHARE_GAIN):
             terms = tuple(LawTerm(kinds[i].name, float(c), kinds[i].unit(motion), i) for i, c in zip(chosen, coefficients))
             law = replace(law, terms=terms, share=share, fitted=explained_share(whole, chosen, coefficients))
@@ -243,10 +245,10 @@ def _left_out(parts: Sequence[RegressionBlock]) -> Iterable[tuple[np.ndarray, li
     for k in range(BLOCK_COUNT):
         blocks = [
             [
-                RegressionBlock(f, x, z, one.weight)
-                for f, x, z in zip(*(np.array_split(values, BLOCK_COUNT) for values in one[:3]))
+                RegressionBlock(f, x, z, part.weight)
+                for f, x, z in zip(*(np.array_split(values, BLOCK_COUNT) for values in part[:3]))
             ]
-            for one in parts
+            for part in parts
         ]
-        given = np.sum([block.across() for rows in blocks for i, block in enumerate(rows) if i != k], axis=0)
-        yield given, [rows[k] for rows in blocks]
+        training = np.sum([block.across() for rows in blocks for i, block in enumerate(rows) if i != k], axis=0)
+        yield training, [rows[k] for rows in blocks]

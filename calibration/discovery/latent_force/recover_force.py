@@ -1,6 +1,6 @@
 """Recovery of the latent force from the residual, by the model's equation of motion.
 
-The latent force is what would have to act on the model for it to follow every record. The residual r, measured minus simulated
+The latent force is the force that makes the model follow every record. The residual r, measured minus simulated
 and tapered at its ends, is put into the model's equation of motion. If that is linear, r = H F, and r is divided by H. If not,
 accelerations a along the recorded path and along the simulated path y are subtracted:
 
@@ -98,12 +98,12 @@ def _accelerations(
 ) -> Float[Array, "t 6"]:
     memory = model.rest().memory
 
-    def of(time, position, rate):
+    def acceleration(time, position, rate):
         velocity = model.body_velocity(position, rate)
         moved = model.rate(time, State(position, velocity, memory), sea)
         return jax.jvp(model.position_rate, (position, velocity), (rate, moved.velocity))[1]
 
-    return jax.vmap(of)(time, position, rate)
+    return jax.vmap(acceleration)(time, position, rate)
 
 
 def accelerations(model: Model, sea: AbstractSea, time: np.ndarray, position: np.ndarray, rate: np.ndarray) -> np.ndarray:
@@ -117,9 +117,11 @@ def accelerations(model: Model, sea: AbstractSea, time: np.ndarray, position: np
         rate: Their rates (m/s, rad/s; t, 6).
     """
     n = len(time)
-    at = np.minimum(np.arange(-(-n // INSTANTS_AT_ONCE) * INSTANTS_AT_ONCE), n - 1).reshape(-1, INSTANTS_AT_ONCE)
-    found = [_accelerations(model, sea, *(jnp.asarray(one[some]) for one in (time, position, rate))) for some in at]
-    return np.concatenate(found)[:n]
+    indices = np.minimum(np.arange(-(-n // INSTANTS_AT_ONCE) * INSTANTS_AT_ONCE), n - 1).reshape(-1, INSTANTS_AT_ONCE)
+    parts = [
+        _accelerations(model, sea, *(jnp.asarray(values[chunk]) for values in (time, position, rate))) for chunk in indices
+    ]
+    return np.concatenate(parts)[:n]
 
 
 def forces_of(model: Model, test: ResampledTest, base: np.ndarray, highest: float) -> dict[str, RecoveredForce]:
@@ -128,34 +130,36 @@ def forces_of(model: Model, test: ResampledTest, base: np.ndarray, highest: floa
     frequency = np.fft.rfftfreq(n, test.step)
     omega = 2 * np.pi * frequency
     rest = equilibrium(model)
-    mass, stiffness = (np.asarray(one) for one in linearised(model, rest))
+    mass, stiffness = (np.asarray(matrix) for matrix in linearised(model, rest))
     position, rate = np.tile(np.asarray(rest), (n, 1)), np.zeros((n, 6))
     more, faster, pushed = np.zeros((n, 6)), np.zeros((n, 6)), np.zeros((n, 6))
     cut, fades, noise = {}, {}, np.zeros(6)
     for name in names:
         j, residual = DOFS.index(name), test.measured[name] - test.simulated[name]
         cut[name], noise[j] = windows(residual), noise_level(residual, test.noise[name])
-        own = MAX_HARMONIC * peak_of(test.measured[name]) / (n * test.step) if test.kind == "decay" else highest
-        fades[name] = 0.5 + 0.5 * np.cos(np.pi * np.clip(5 * (frequency / min(own, highest) - 0.8), 0.0, 1.0))
+        fastest = MAX_HARMONIC * peak_of(test.measured[name]) / (n * test.step) if test.kind == "decay" else highest
+        fades[name] = 0.5 + 0.5 * np.cos(np.pi * np.clip(5 * (frequency / min(fastest, highest) - 0.8), 0.0, 1.0))
         lines = fades[name] * np.fft.rfft(residual * cut[name][0])
         more[:, j], faster[:, j], pushed[:, j] = (np.fft.irfft(lines * (1j * omega) ** k, n) for k in range(3))
         position[:, j] = base[j] + test.simulated[name]
         rate[:, j] = CubicSpline(test.time, test.simulated[name])(test.time, 1)
-    there, here = (accelerations(model, test.sea, test.time, position + k * more, rate + k * faster) for k in (1, 0))
-    force = (pushed - there + here) @ mass.T
+    along_recorded, along_simulated = (
+        accelerations(model, test.sea, test.time, position + k * more, rate + k * faster) for k in (1, 0)
+    )
+    force = (pushed - along_recorded + along_simulated) @ mass.T
     path, speed = position + more - np.asarray(rest), rate + faster
     # what noise in the residual makes of the force, line by line: DAMPING stands for a damping that it is not sensitive to
     impedance = (stiffness - omega[:, None, None] ** 2 * mass) ** 2 + (
         2 * DAMPING_RATIO * omega[:, None, None] ** 2 * mass
     ) ** 2
-    found = {}
+    forces = {}
     for name in names:
         j, (_, taper, inside) = DOFS.index(name), cut[name]
         through = impedance[:, j] @ noise**2
         gain, peak = filter_gain(force[:, j], taper, through)
         gain = gain * fades[name]
-        left = float(np.sqrt(2 * (gain**2 * through).sum() / n))
-        found[name] = RecoveredForce(
+        remaining_noise = float(np.sqrt(2 * (gain**2 * through).sum() / n))
+        forces[name] = RecoveredForce(
             test,
             name,
             filtered(force[:, j] * taper, gain),
@@ -166,10 +170,10 @@ def forces_of(model: Model, test: ResampledTest, base: np.ndarray, highest: floa
             gain,
             taper,
             inside,
-            left,
+            remaining_noise,
             peak,
         )
-    return found
+    return forces
 
 
 def latent_forces(
@@ -185,12 +189,12 @@ def latent_forces(
     """
     base, highest = np.asarray(equilibrium(model)) * from_rest, highest_frequency(model)
     every = [forces_of(model, test, base, highest) for test in tests]
-    found = []
+    described_forces = []
     for motion in motions:
         mine = [forces[motion] for forces in every if motion in forces]
-        if any(one.visible for one in mine):
-            found.append(described(motion, mine, law_of(motion, mine)))
-    return tuple(sorted(found, key=lambda one: DOFS.index(one.motion)))
+        if any(recovered.visible for recovered in mine):
+            described_forces.append(described(motion, mine, law_of(motion, mine)))
+    return tuple(sorted(described_forces, key=lambda force: DOFS.index(force.motion)))
 
 
 def latent_of(search: Search, fitted: Calibration) -> tuple[LatentForce, ...]:
@@ -215,8 +219,8 @@ def resampled_tests(search: Search, fitted: Calibration) -> Iterator[ResampledTe
             water, time = sea.sea, begin + tick * ticks
             wave = None if record.wave is None else np.interp(time, record.time, record.wave)
         both = [
-            {one.channel: CubicSpline(test.time, values)(time) for one, values in rows}
+            {series.channel: CubicSpline(test.time, values)(time) for series, values in rows}
             for rows in ([(s, s.measured) for s in test.series], [(s, s.simulated) for s in test.series])
         ]
-        noise = {one.channel: one.noise for one in test.series}
+        noise = {series.channel: series.noise for series in test.series}
         yield ResampledTest(test.id, test.use, test.kind, time, both[0], both[1], noise, water, wave)

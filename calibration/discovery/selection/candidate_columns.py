@@ -47,7 +47,7 @@ class CandidateColumns:
     @property
     def laboratory(self) -> frozenset[int]:
         """Variants that are mistakes of the laboratory."""
-        return frozenset(i for i, one in enumerate(self.variants) if one.laboratory)
+        return frozenset(i for i, variant in enumerate(self.variants) if variant.laboratory)
 
     def listed(self, variants: Iterable[int]) -> list[ListedVariant]:
         """Some of the variants by name and values of their shapes."""
@@ -55,8 +55,8 @@ class CandidateColumns:
 
     def present(self, chosen: Sequence[Candidate]) -> tuple[int, ...]:
         """Variants of the effects in the model: each effect's first."""
-        names = [one.name for one in self.variants]
-        return tuple(names.index(one.name) for one in chosen)
+        names = [variant.name for variant in self.variants]
+        return tuple(names.index(candidate.name) for candidate in chosen)
 
 
 def linearise_candidates(fits: EffectFits, state: FitState, among: Sequence[ListedVariant] | None = None) -> CandidateColumns:
@@ -67,8 +67,8 @@ def linearise_candidates(fits: EffectFits, state: FitState, among: Sequence[List
         state: The fitted model.
         among: Candidates at values of their shapes; None: all. Further values that slopes suggest are always tried.
     """
-    names = {one.name for one in state.chosen}
-    others = [one for one in fits.setup.candidates if one.name not in names]
+    names = {candidate.name for candidate in state.chosen}
+    others = [candidate for candidate in fits.setup.candidates if candidate.name not in names]
     # a fit moves on with the slopes at hand, and leaves the shapes of its effects alone
     active = fits.active(state.chosen) if state.chosen else None
     return candidate_columns(fits, state.look, state.chosen, others, among, active)
@@ -137,11 +137,11 @@ class _Columns:
         self.directions += directions
         return range(begin, len(self.directions))
 
-    def add(self, one: Candidate, columns: Sequence[int], values: Mapping[str, float]) -> None:
+    def add(self, candidate: Candidate, columns: Sequence[int], values: Mapping[str, float]) -> None:
         """Add a candidate at values of its shapes, which share its prior odds."""
-        laboratory = one.effect in LABORATORY_EFFECTS
-        odds = (LABORATORY_LOG_ODDS if laboratory else PHYSICS_LOG_ODDS) - math.log(max(len(one.grid), 1))
-        self.variants.append(Variant(one.name, tuple(columns), odds, laboratory))
+        laboratory = candidate.effect in LABORATORY_EFFECTS
+        odds = (LABORATORY_LOG_ODDS if laboratory else PHYSICS_LOG_ODDS) - math.log(max(len(candidate.grid), 1))
+        self.variants.append(Variant(candidate.name, tuple(columns), odds, laboratory))
         self.values.append(values)
 
     def add_linearised(self, chosen: Sequence[Candidate], candidates: Sequence[Candidate]) -> None:
@@ -151,17 +151,20 @@ class _Columns:
             chosen: The effects in the model.
             candidates: Other candidates, of which those with nearly known parameters are added.
         """
-        for one in (*chosen, *candidates):
-            if is_nearly_known(self.fits, one):
-                self.add_nearly_known(one)
-            elif one in chosen:
-                self.add(one, [self.look.active.index(i) for i in self.study.index(one.labels)], {})
+        for candidate in (*chosen, *candidates):
+            if is_nearly_known(self.fits, candidate):
+                self.add_nearly_known(candidate)
+            elif candidate in chosen:
+                self.add(candidate, [self.look.active.index(i) for i in self.study.index(candidate.labels)], {})
 
-    def add_nearly_known(self, one: Candidate) -> None:
-        """Add an effect whose parameters move a little in every fit. Second columns of the same slopes let them go further."""
-        mine = self.study.index(one.amplitudes)
+    def add_nearly_known(self, candidate: Candidate) -> None:
+        """Add an effect whose parameters move a little in every fit.
+
+        Second columns of the same slopes let them go further.
+        """
+        mine = self.study.index(candidate.amplitudes)
         slopes = self.look.slopes[:, [self.look.active.index(i) for i in mine]]
-        self.add(one, self.append(slopes, mine), {})
+        self.add(candidate, self.append(slopes, mine), {})
 
     def take(self, passes: Sequence[Sequence[CandidateValues]], looks: Sequence[Linearisation]) -> list[CandidateValues]:
         """Take the slopes along candidates at values of their shapes.
@@ -175,36 +178,40 @@ class _Columns:
         """
         active, study = self.look.active, self.study
         further: list[CandidateValues] = []
-        for some, seen in zip(passes, looks, strict=True):
-            numbers = dict(zip(seen.active, self.append(seen.slopes, list(seen.active)), strict=True))
-            for one, at in some:
-                amplitudes = study.index(one.amplitudes)
-                self.add(one, [active.index(i) if i in active else numbers[i] for i in amplitudes], at)
-                if one.shape_finder is not None and at in (one.grid or ({},)):
-                    first = seen.slopes[:, seen.active.index(amplitudes[0])]
-                    further += [(one, {**at, **shape}) for shape in one.shape_finder(study, self.look, first)]
-                if one.phase_per_unit is not None:
-                    look = self.look.joined_with(seen.restricted_to(amplitudes[:1]))
-                    self.add_far_shift(one, replace(look, place=seen.place))
+        for members, linearisation in zip(passes, looks, strict=True):
+            numbers = dict(
+                zip(linearisation.active, self.append(linearisation.slopes, list(linearisation.active)), strict=True)
+            )
+            for candidate, values in members:
+                amplitudes = study.index(candidate.amplitudes)
+                self.add(candidate, [active.index(i) if i in active else numbers[i] for i in amplitudes], values)
+                if candidate.shape_finder is not None and values in (candidate.grid or ({},)):
+                    first = linearisation.slopes[:, linearisation.active.index(amplitudes[0])]
+                    further += [(candidate, {**values, **shape}) for shape in candidate.shape_finder(study, self.look, first)]
+                if candidate.phase_per_unit is not None:
+                    look = self.look.joined_with(linearisation.restricted_to(amplitudes[:1]))
+                    self.add_far_shift(candidate, replace(look, place=linearisation.place))
         return further
 
-    def add_far_shift(self, one: Candidate, look: Linearisation) -> None:
-        """Add an effect that shifts the phases of waves, where phases say that it is further away than slopes reach.
+    def add_far_shift(self, candidate: Candidate, look: Linearisation) -> None:
+        """Add an effect that shifts the phases of waves, if it is further away than slopes reach.
+
+        `phase_shift_start` finds this out from the phases.
 
         Args:
-            one: The candidate.
+            candidate: The candidate.
             look: Linearisation whose last direction is the candidate's.
         """
-        assert one.phase_per_unit is not None
-        far = phase_shift_start(self.study, look, one.amplitudes[0], one.phase_per_unit)
+        assert candidate.phase_per_unit is not None
+        far = phase_shift_start(self.study, look, candidate.amplitudes[0], candidate.phase_per_unit)
         if far is not None:
-            factor = phase_shift_factor(self.study, one.phase_per_unit, far.values[one.amplitudes[0]])
+            factor = phase_shift_factor(self.study, candidate.phase_per_unit, far.values[candidate.amplitudes[0]])
             lines = (look.slopes[:, -1].reshape(-1, 2) @ [1, 1j]) * factor
             secant = np.stack([lines.real, lines.imag], axis=1).reshape(-1, 1)
-            self.add(one, self.append(secant, look.active[-1:]), far.values)
+            self.add(candidate, self.append(secant, look.active[-1:]), far.values)
 
     def columns(self) -> CandidateColumns:
-        """The linear model of what was gathered."""
+        """The linear model of the gathered columns."""
         return CandidateColumns(
             linear_model(self.fits, self.look, np.hstack(self.slopes), self.directions),
             tuple(range(len(self.fits.base))),

@@ -22,17 +22,17 @@ def left_out_deviances(model: LinearModel, columns: Sequence[int], group: np.nda
         group: Group of every pool (p,).
         begin: A fit of these columns to all groups.
     """
-    found = np.zeros(group.max() + 1)
+    deviances = np.zeros(group.max() + 1)
     for number in np.unique(group[model.used]):
         out = group == number
         rest = model.with_freedom(np.where(out, 0.0, model.freedom)).fit(columns, begin)
-        there = model.with_freedom(np.where(out, model.freedom, 0.0)).fit((), start=model.steps_after(rest))
-        found[number] = float(there.deviance.sum())
-    return found
+        held_out = model.with_freedom(np.where(out, model.freedom, 0.0)).fit((), start=model.steps_after(rest))
+        deviances[number] = float(held_out.deviance.sum())
+    return deviances
 
 
 def held_out_gain(model: LinearModel, fitted: LinearFit, without: LinearFit, group: np.ndarray) -> np.ndarray:
-    """Decrease of -2 ln L of every group that is left out (g,), by the columns that one fit has and another has not.
+    """Decrease of -2 ln L of every left-out group (g,), by columns that one of two fits lacks.
 
     Args:
         model: The linear model.
@@ -40,5 +40,5 @@ def held_out_gain(model: LinearModel, fitted: LinearFit, without: LinearFit, gro
         without: The fit without them.
         group: Group of every pool (p,): its test.
     """
-    before, after = (left_out_deviances(model, one.columns, group, one) for one in (without, fitted))
+    before, after = (left_out_deviances(model, fit.columns, group, fit) for fit in (without, fitted))
     return before - after

@@ -18,7 +18,7 @@ REWEIGHTINGS = 3  # fits of a held-out decay's own unknowns
 
 
 def predicted_summary(study: Study, look: Linearisation, residual: np.ndarray) -> ResidualSummary:
-    """What a residual leaves, with held-out decays' own unknowns fitted to them.
+    """Summary of a residual, with the held-out decays' own unknowns fitted to them.
 
     Args:
         study: The study.
@@ -26,12 +26,12 @@ def predicted_summary(study: Study, look: Linearisation, residual: np.ndarray) -
         residual: Residual that the linear model predicts (n,).
     """
     residual = residual.copy()
-    for _, own, _ in decays_with_unknowns(study, look, fitted=False):
-        before, prior = residual[own.rows].copy(), np.diag(1 / own.width**2)
+    for _, unknowns, _ in decays_with_unknowns(study, look, fitted=False):
+        before, prior = residual[unknowns.rows].copy(), np.diag(1 / unknowns.width**2)
         for _ in range(REWEIGHTINGS):
-            weighted = row_weights(study, residual)[own.rows, None] * own.slopes
-            step = np.linalg.solve(weighted.T @ own.slopes + prior, -(weighted.T @ before + prior @ own.value))
-            residual[own.rows] = before + own.slopes @ step
+            weighted = row_weights(study, residual)[unknowns.rows, None] * unknowns.slopes
+            step = np.linalg.solve(weighted.T @ unknowns.slopes + prior, -(weighted.T @ before + prior @ unknowns.value))
+            residual[unknowns.rows] = before + unknowns.slopes @ step
     return ResidualSummary.of(study, residual)
 
 
@@ -40,8 +40,8 @@ def refusal_by_prediction(study: Study, without: ResidualSummary, with_it: Resid
 
     Args:
         study: The study.
-        without: What the fit without the effect leaves.
-        with_it: What the fit with it leaves.
+        without: Residual of the fit without the effect.
+        with_it: Residual of the fit with it.
     """
     compared = HeldOutComparison(study, ~study.used, without, with_it, True)
     share, told = compared.error_reduction()
@@ -57,7 +57,8 @@ def supported_effects(
 ) -> tuple[Subset, dict[int, Refusal]]:
     """The effects that predicted held-out tests support, and why the others are left out.
 
-    One unsupported effect goes at a time: the one without which the tests are followed best. The others are judged anew.
+    Unsupported effects go one at a time, first the effect without which the tests are followed best. The others are then
+    assessed anew.
 
     Args:
         study: The study.

@@ -1,7 +1,7 @@
 """Selection of effects: subsets of candidates compared by their evidence on a linearised model.
 
 The best subsets are found best first: from every one of the few best, effects are added, removed and exchanged. The posterior
-probability of a subset is its evidence times its prior. The likelihood is tempered by what the best subset leaves above the
+probability of a subset is its evidence times its prior. The likelihood is tempered by the best subset's residual above the
 noise (coarsened posterior).
 
 Two kinds of subsets are left out:
@@ -93,16 +93,16 @@ class JointSelection:
         return self.judged[subset.variants]
 
     def steps(self, subset: Subset) -> dict[int, tuple[float, float, bool]]:
-        """What one linear step along each variant of other candidates would gain, with the subset's weights.
+        """Gain of one linear step along each variant of other candidates, with the subset's weights.
 
         Returns:
             By variant: decrease of -2 ln L and prior, and of -2 times the logarithm of evidence times prior; whether the step
             ends at the end of a plausible range.
         """
         model, mine = self.model, list(subset.fit.columns)
-        there = {self.variants[i].name for i in subset.variants}
-        new = {i: one for i, one in enumerate(self.variants) if i in self.among and one.name not in there}
-        others = [i for i, one in new.items() if not set(one.columns) <= set(mine)]
+        present = {self.variants[i].name for i in subset.variants}
+        new = {i: variant for i, variant in enumerate(self.variants) if i in self.among and variant.name not in present}
+        others = [i for i, variant in new.items() if not set(variant.columns) <= set(mine)]
         columns = list(dict.fromkeys([*mine, *(c for i in others for c in self.variants[i].columns)]))
         whole = model.products_after(subset.fit)[np.ix_([*columns, -1], [*columns, -1])]
         base = len(mine)
@@ -111,28 +111,28 @@ class JointSelection:
         # a column that the subset's columns explain leaves rounding, of either sign
         explained = np.diag(rest) <= EXPLAINED_ROUNDING * np.diag(whole)[base:]
         rest[explained], rest[:, explained] = 0.0, 0.0
-        at = {column: i for i, column in enumerate(columns[base:])}
-        found = {}
+        position = {column: i for i, column in enumerate(columns[base:])}
+        gains = {}
         for i in others:
-            some = [c for c in self.variants[i].columns if c in at]
-            rows, width = [at[c] for c in some], model.width[some]
+            added = [c for c in self.variants[i].columns if c in position]
+            rows, width = [position[c] for c in added], model.width[added]
             matrix, slope = rest[np.ix_(rows, rows)] + np.diag(1 / width**2), rest[rows, -1]
-            neutral = model.neutral[some]
-            low, high = model.lower[some] - neutral, model.upper[some] - neutral
+            neutral = model.neutral[added]
+            low, high = model.lower[added] - neutral, model.upper[added] - neutral
             step = bounded_minimum(matrix, slope, low, high)
             gain = float(-(step @ matrix @ step) - 2 * slope @ step)
             occam = float(np.linalg.slogdet(matrix * np.outer(width, width))[1]) if step.any() else 0.0
-            at_end = bool((model.ends[some] & ((step <= low) | (step >= high)) & (step != 0)).any())
-            found[i] = gain, gain - occam + 2 * self.variants[i].log_odds, at_end
-        return found
+            at_end = bool((model.ends[added] & ((step <= low) | (step >= high)) & (step != 0)).any())
+            gains[i] = gain, gain - occam + 2 * self.variants[i].log_odds, at_end
+        return gains
 
     def additions(self, subset: Subset) -> list[int]:
         """Variants of other candidates, the most promising first, by one linear step.
 
         Beside other effects, those that would be at the end of their plausible range come last.
         """
-        found = self.steps(subset)
-        return sorted(found, key=lambda i: (bool(subset.variants) and found[i][2], -found[i][1]))
+        gains = self.steps(subset)
+        return sorted(gains, key=lambda i: (bool(subset.variants) and gains[i][2], -gains[i][1]))
 
     def first_order_gains(self, subset: Subset) -> dict[int, float]:
         """Decrease of -2 ln L and prior by one linear step along each variant of other candidates."""
@@ -145,12 +145,12 @@ class JointSelection:
     def neighbours(self, subset: Subset) -> list[Subset]:
         """Subsets with one effect more, one less, or one exchanged."""
         more = self.additions(subset)[:MAX_ADDITIONS] if len(subset.variants) < MAX_EFFECTS else []
-        found = [self.subset([*subset.variants, i], subset) for i in more]
+        subsets = [self.subset([*subset.variants, i], subset) for i in more]
         for i in subset.variants:
-            found.append(rest := self.without(subset, i))
+            subsets.append(rest := self.without(subset, i))
             others = [j for j in self.additions(rest) if j != i][:MAX_EXCHANGES]
-            found += [self.subset([*rest.variants, j], rest) for j in others]
-        return found
+            subsets += [self.subset([*rest.variants, j], rest) for j in others]
+        return subsets
 
     def run(self, begin: Sequence[int] = ()) -> Selection:
         """The most probable subsets.
@@ -166,7 +166,7 @@ class JointSelection:
         done: set[tuple[int, ...]] = set()
         while len(self.fitted) < MAX_SUBSETS:
             ahead = chain(self.answers(EXPANDED_SUBSETS), self.best(EXPANDED_SUBSETS))
-            todo = next((one for one in ahead if one.variants not in done), None)
+            todo = next((subset for subset in ahead if subset.variants not in done), None)
             if todo is None:
                 break
             done.add(todo.variants)
@@ -179,8 +179,8 @@ class JointSelection:
     def with_required(self, subset: Subset) -> Subset:
         """A subset with the required effects that it lacks, each in its most promising variant."""
         while not self.has_required(subset):
-            there = {self.variants[i].name for i in subset.variants}
-            lacking = (i for i in self.additions(subset) if self.variants[i].name in self.required - there)
+            present = {self.variants[i].name for i in subset.variants}
+            lacking = (i for i in self.additions(subset) if self.variants[i].name in self.required - present)
             subset = self.subset([*subset.variants, next(lacking)], subset)
         return subset
 
@@ -188,14 +188,14 @@ class JointSelection:
         """A subset to which effects are added one by one as long as the evidence grows."""
         while len(subset.variants) < MAX_EFFECTS:
             trials = [self.subset([*subset.variants, i], subset) for i in self.additions(subset)[:MAX_ADDITIONS]]
-            better = [one for one in trials if one.evidence > subset.evidence and self.takes_part(one)]
+            better = [trial for trial in trials if trial.evidence > subset.evidence and self.takes_part(trial)]
             if not better:
                 break
-            subset = max(better, key=lambda one: one.evidence)
+            subset = max(better, key=lambda trial: trial.evidence)
         return subset
 
     def temper(self, best: Subset) -> None:
-        """Temper the likelihood by what a subset leaves above the noise."""
+        """Temper the likelihood by a subset's residual above the noise."""
         discrepancy = self.model.discrepancy(self.model.residual_after(best.fit))
         if discrepancy > MIN_DISCREPANCY:
             self.model, self.fitted, self.judged = self.model.tempered(discrepancy), {}, {}
@@ -205,23 +205,25 @@ class JointSelection:
         return self.required <= {self.variants[i].name for i in subset.variants}
 
     def answers(self, most: int | None = None) -> Iterator[Subset]:
-        """Those of `best` that have every required effect and none at the end of its range, so many at most; none where nothing
-        is required."""
-        mine = (one for one in self.by_evidence() if self.required and self.has_required(one) and not one.at_end)
+        """The subsets of `best` that may be the answer, at most `most` of them.
+
+        They have every required effect, and none at the end of its range. There are none where nothing is required.
+        """
+        mine = (subset for subset in self.by_evidence() if self.required and self.has_required(subset) and not subset.at_end)
         return islice(filter(self.takes_part, mine), most)
 
     def best(self, most: int | None = None) -> Iterator[Subset]:
-        """The fitted subsets that take part, the most probable first, so many at most."""
+        """The fitted subsets that take part, the most probable first, at most `most` of them."""
         return islice(filter(self.takes_part, self.by_evidence()), most)
 
     def by_evidence(self) -> list[Subset]:
         """The fitted subsets, the most probable first."""
-        return sorted(self.fitted.values(), key=lambda one: -one.evidence)
+        return sorted(self.fitted.values(), key=lambda subset: -subset.evidence)
 
 
 def probable(ordered: Iterator[Subset]) -> tuple[Subset, ...]:
-    """Of subsets in order of evidence, those that are not far less probable than the first."""
+    """Subsets, in order of evidence, that are not far less probable than the first."""
     first = next(ordered, None)
     if first is None:
         return ()
-    return (first, *takewhile(lambda one: one.evidence > first.evidence + MIN_LOG_POSTERIOR, ordered))
+    return (first, *takewhile(lambda subset: subset.evidence > first.evidence + MIN_LOG_POSTERIOR, ordered))

@@ -95,9 +95,9 @@ class LinearModel:
 
     def with_freedom(self, freedom: np.ndarray) -> "LinearModel":
         """The model with other degrees of freedom by pool (p,); the products stay."""
-        other = replace(self, freedom=freedom)
-        other.__dict__["products"] = self.products  # as `cached_property` keeps it
-        return other
+        changed = replace(self, freedom=freedom)
+        changed.__dict__["products"] = self.products  # as `cached_property` keeps it
+        return changed
 
     def levels(self, residual: np.ndarray) -> np.ndarray:
         """Mean square over the floor's by pool (p,)."""
@@ -116,15 +116,15 @@ class LinearModel:
 
         Args:
             sums: The sums, of columns of which the last is the residual.
-            values: The decays' own unknowns where the residual is meant.
+            values: The decays' own unknowns at the point of the residual.
 
         Returns:
-            The sum (k, k), and by decay what gives its own unknowns: -(this @ [step, 1]) (o, k).
+            The sum (k, k), and by decay the matrix B that gives its own unknowns, -B @ [step, 1] (o, k).
         """
         whole, back = sums.whole.copy(), []
-        for one, (cross, inner), value in zip(self.own, sums.own, values, strict=True):
-            cross = cross + np.pad((value / one.width**2)[:, None], ((0, 0), (cross.shape[1] - 1, 0)))
-            inner = inner + np.diag(1 / one.width**2)
+        for unknowns, (cross, inner), value in zip(self.own, sums.own, values, strict=True):
+            cross = cross + np.pad((value / unknowns.width**2)[:, None], ((0, 0), (cross.shape[1] - 1, 0)))
+            inner = inner + np.diag(1 / unknowns.width**2)
             inner[np.diag_indices_from(inner)] += RIDGE * np.diag(inner).mean()
             solved = cho_solve(cho_factor(inner), cross)
             whole -= cross.T @ solved
@@ -143,57 +143,60 @@ class LinearModel:
         mean, width = self.mean[columns], self.width[columns]
         low, high = self.lower[columns], self.upper[columns]
         products = self.products.combined(columns, self._without(columns) if start is None else start)
-        values = [one.value for one in self.own]
+        values = [unknowns.value for unknowns in self.own]
         if begin is None:
             level = products.levels(np.append(np.zeros(len(columns)), 1.0), [0 * value for value in values])
         else:
             level = begin.levels[products.pools]
-        cost, found = math.inf, None
+        cost, result = math.inf, None
         for _ in range(REWEIGHTINGS):
             sums = products.weighted(self.weights(level))
             whole, back = self.eliminated(sums, values)
             matrix = whole[:-1, :-1] + np.diag(1 / width**2)
             step = bounded_minimum(matrix, whole[:-1, -1] - mean / width**2, low, high)
-            own = tuple(-(one @ np.append(step, 1.0)) for one in back)
-            level = products.levels(np.append(step, 1.0), own)
+            own_steps = tuple(-(solved @ np.append(step, 1.0)) for solved in back)
+            level = products.levels(np.append(step, 1.0), own_steps)
             penalty = float((((step - mean) / width) ** 2).sum())
-            penalty += sum(float((((one.value + y) / one.width) ** 2).sum()) for one, y in zip(self.own, own, strict=True))
+            penalty += sum(
+                float((((unknowns.value + y) / unknowns.width) ** 2).sum())
+                for unknowns, y in zip(self.own, own_steps, strict=True)
+            )
             at_bound = (step <= low) | (step >= high)
             levels = self._by_pool(level)
             before = cost
-            found = LinearFit(tuple(columns), step, own, levels, self.deviances(levels), penalty, matrix, at_bound)
-            cost = found.cost
+            result = LinearFit(tuple(columns), step, own_steps, levels, self.deviances(levels), penalty, matrix, at_bound)
+            cost = result.cost
             if abs(before - cost) < SMALL_CHANGE:
                 break
-        assert found is not None
-        return found
+        assert result is not None
+        return result
 
-    def products_after(self, found: LinearFit) -> np.ndarray:
+    def products_after(self, fit: LinearFit) -> np.ndarray:
         """Products of all columns and of the residual after a fit, with that fit's weights (k + 1, k + 1)."""
-        sums = self.products.weighted(self.weights(found.levels[self.products.pools]))
-        values = [one.value + y for one, y in zip(self.own, found.own, strict=True)]
-        return self.eliminated(sums.moved(self.steps_after(found), found.own), values)[0]
+        sums = self.products.weighted(self.weights(fit.levels[self.products.pools]))
+        values = [unknowns.value + y for unknowns, y in zip(self.own, fit.own, strict=True)]
+        return self.eliminated(sums.moved(self.steps_after(fit), fit.own), values)[0]
 
-    def steps_after(self, found: LinearFit) -> np.ndarray:
+    def steps_after(self, fit: LinearFit) -> np.ndarray:
         """Steps along all columns after a fit, and 1 for the residual (k + 1,)."""
-        at = self._without(found.columns)
-        at[list(found.columns)] = found.step
-        return at
+        steps = self._without(fit.columns)
+        steps[list(fit.columns)] = fit.step
+        return steps
 
-    def residual_after(self, found: LinearFit) -> np.ndarray:
+    def residual_after(self, fit: LinearFit) -> np.ndarray:
         """Residual (n,) after the steps of a fit."""
-        at = self.steps_after(found)[:-1]
-        moved = np.flatnonzero(at)
-        residual = self.residual + self.slopes[:, moved] @ at[moved]
-        for one, y in zip(self.own, found.own, strict=True):
-            residual[one.rows] += one.slopes @ y
+        steps = self.steps_after(fit)[:-1]
+        moved = np.flatnonzero(steps)
+        residual = self.residual + self.slopes[:, moved] @ steps[moved]
+        for unknowns, y in zip(self.own, fit.own, strict=True):
+            residual[unknowns.rows] += unknowns.slopes @ y
         return residual
 
     def _without(self, columns: Sequence[int]) -> np.ndarray:
         """Steps to where all other columns are neutral, and 1 for the residual (k + 1,)."""
-        at = np.append(self.neutral, 1.0)
-        at[list(columns)] = 0.0
-        return at
+        steps = np.append(self.neutral, 1.0)
+        steps[list(columns)] = 0.0
+        return steps
 
     def _by_pool(self, level: np.ndarray) -> np.ndarray:
         """Mean squares by pool (p,), 0 in pools without rows.
@@ -205,26 +208,26 @@ class LinearModel:
         every[self.products.pools] = level
         return every
 
-    def log_evidence(self, found: LinearFit) -> float:
+    def log_evidence(self, fit: LinearFit) -> float:
         """Logarithm of the evidence of a fit's columns, by Laplace's approximation.
 
         A column that a bound keeps neutral counts as fixed.
         """
-        free = ~(found.at_bound & (np.abs(found.step - self.neutral[list(found.columns)]) < 1e-12))
-        width = self.width[list(found.columns)][free]
-        scaled = found.matrix[np.ix_(free, free)] * np.outer(width, width)
-        return -0.5 * found.cost - 0.5 * float(np.linalg.slogdet(scaled)[1])
+        free = ~(fit.at_bound & (np.abs(fit.step - self.neutral[list(fit.columns)]) < 1e-12))
+        width = self.width[list(fit.columns)][free]
+        scaled = fit.matrix[np.ix_(free, free)] * np.outer(width, width)
+        return -0.5 * fit.cost - 0.5 * float(np.linalg.slogdet(scaled)[1])
 
-    def at_end(self, found: LinearFit) -> bool:
+    def at_end(self, fit: LinearFit) -> bool:
         """Whether a column of a fit is at the end of its plausible range."""
-        columns = list(found.columns)
-        return bool((found.at_bound & self.ends[columns] & (np.abs(found.step - self.neutral[columns]) > 1e-12)).any())
+        columns = list(fit.columns)
+        return bool((fit.at_bound & self.ends[columns] & (np.abs(fit.step - self.neutral[columns]) > 1e-12)).any())
 
     def discrepancy(self, residual: np.ndarray) -> float:
-        """How many degrees of freedom of a residual count as one.
+        """Number of degrees of freedom of a residual that count as one.
 
-        It is the geometric mean of the residual's root mean square over the floor's, and at least 1. What a model leaves above
-        the noise is its own error, and is alike in all records. Its samples are not so many independent observations.
+        It is the geometric mean of the residual's root mean square over the floor's, and at least 1. A residual above the noise
+        is the model's own error, and is alike in all records. Its samples therefore count as fewer independent observations.
         """
         logarithm = np.log(np.maximum(self.levels(residual), 1.0))
         return math.exp(0.5 * float((self.freedom * logarithm).sum()) / max(float(self.freedom.sum()), 1.0))
@@ -251,6 +254,6 @@ def bounded_minimum(matrix: np.ndarray, slope: np.ndarray, low: np.ndarray, high
     roots = np.sqrt(np.maximum(size, RIDGE * size[-1]))  # rounding makes eigenvalues of dependent columns negative
     root = roots[:, None] * directions.T
     target = -(directions.T @ (scale * slope)) / roots
-    found = lsq_linear(root, target, (low / scale, high / scale), method="bvls", tol=1e-12)
-    inside = np.clip(scale * found.x, low, high)
-    return np.where(found.active_mask > 0, high, np.where(found.active_mask < 0, low, inside))
+    solution = lsq_linear(root, target, (low / scale, high / scale), method="bvls", tol=1e-12)
+    inside = np.clip(scale * solution.x, low, high)
+    return np.where(solution.active_mask > 0, high, np.where(solution.active_mask < 0, low, inside))

@@ -1,7 +1,7 @@
 """Products of the columns of a linear model, pool by pool.
 
-A pool's rows share one weight. So least squares with any weights, and the mean square of every pool after any step, need the
-products of the columns in each pool only. The rows are needed once.
+A pool's rows share one weight. So the products of the columns in each pool are enough for least squares with any weights. They
+also give the mean square of every pool after any step. The rows are needed once.
 """
 
 from collections.abc import Sequence
@@ -31,12 +31,12 @@ class OwnProducts(NamedTuple):
     """Products of a decay's own unknowns in its pools.
 
     Attributes:
-        at: Numbers of the decay's pools (q,).
+        pools: Numbers of the decay's pools (q,).
         cross: With the columns (o, k, q).
         inner: With each other (o, o, q).
     """
 
-    at: np.ndarray
+    pools: np.ndarray
     cross: np.ndarray
     inner: np.ndarray
 
@@ -52,19 +52,19 @@ class WeightedSums(NamedTuple):
     whole: np.ndarray
     own: tuple[tuple[np.ndarray, np.ndarray], ...]
 
-    def moved(self, step: np.ndarray, own: Sequence[np.ndarray]) -> "WeightedSums":
+    def moved(self, step: np.ndarray, own_steps: Sequence[np.ndarray]) -> "WeightedSums":
         """The sums with the residual after steps.
 
         Args:
             step: Coefficients of all columns (k,); 1 for the residual.
-            own: Steps of every decay's own unknowns.
+            own_steps: Steps of every decay's own unknowns.
         """
 
         def after(sums: np.ndarray) -> np.ndarray:
             return np.column_stack([sums[:, :-1], sums @ step])
 
         whole, each = after(after(self.whole).T), []
-        for (cross, inner), y in zip(self.own, own, strict=True):
+        for (cross, inner), y in zip(self.own, own_steps, strict=True):
             moved = after(cross)
             along = moved.T @ y
             along[-1] += y @ inner @ y / 2
@@ -89,12 +89,14 @@ class PooledProducts:
     own: tuple[OwnProducts, ...]
 
     @classmethod
-    def of(cls, columns: np.ndarray, own: Sequence[OwnUnknowns], pool: np.ndarray, share: np.ndarray) -> "PooledProducts":
+    def of(
+        cls, columns: np.ndarray, own_unknowns: Sequence[OwnUnknowns], pool: np.ndarray, share: np.ndarray
+    ) -> "PooledProducts":
         """Products of columns.
 
         Args:
             columns: The columns (n, k).
-            own: The decays' own unknowns.
+            own_unknowns: The decays' own unknowns.
             pool: Pool of every row (n,).
             share: Weight of every row in its pool (n,); rows without weight are left out.
         """
@@ -107,11 +109,11 @@ class PooledProducts:
         for products, mine in zip(whole, rows, strict=True):
             np.matmul(scaled[mine].T, scaled[mine], out=products)
         each = []
-        for one in own:
-            inside = [(i, mine[(mine >= one.rows.start) & (mine < one.rows.stop)]) for i, mine in enumerate(rows)]
+        for unknowns in own_unknowns:
+            inside = [(i, mine[(mine >= unknowns.rows.start) & (mine < unknowns.rows.stop)]) for i, mine in enumerate(rows)]
             inside = [(i, mine) for i, mine in inside if len(mine)]
-            along = [(root[mine, None] * one.slopes[mine - one.rows.start], scaled[mine]) for _, mine in inside]
-            cross = np.stack([side.T @ some for side, some in along], axis=-1)
+            along = [(root[mine, None] * unknowns.slopes[mine - unknowns.rows.start], scaled[mine]) for _, mine in inside]
+            cross = np.stack([side.T @ block for side, block in along], axis=-1)
             inner = np.stack([side.T @ side for side, _ in along], axis=-1)
             each.append(OwnProducts(np.array([i for i, _ in inside]), cross, inner))
         return cls(pools[first:], np.ascontiguousarray(whole.transpose(1, 2, 0)), tuple(each))
@@ -136,23 +138,27 @@ class PooledProducts:
             return np.concatenate([products[:, :m], np.tensordot(products[:, m:], basis[m:, m], (1, 0))[:, None]], axis=1)
 
         whole = both(both(self.whole[np.ix_(taken, taken)]).swapaxes(0, 1)).swapaxes(0, 1)
-        own = tuple(OwnProducts(one.at, both(one.cross[:, taken]), one.inner) for one in self.own)
-        return PooledProducts(self.pools, whole, own)
+        own_products = tuple(
+            OwnProducts(products.pools, both(products.cross[:, taken]), products.inner) for products in self.own
+        )
+        return PooledProducts(self.pools, whole, own_products)
 
     def weighted(self, weight: np.ndarray) -> WeightedSums:
         """Sums over all pools with weights (p,)."""
-        own = tuple((one.cross @ weight[one.at], one.inner @ weight[one.at]) for one in self.own)
-        return WeightedSums(self.whole @ weight, own)
+        own_sums = tuple(
+            (products.cross @ weight[products.pools], products.inner @ weight[products.pools]) for products in self.own
+        )
+        return WeightedSums(self.whole @ weight, own_sums)
 
-    def levels(self, step: np.ndarray, own: Sequence[np.ndarray]) -> np.ndarray:
+    def levels(self, step: np.ndarray, own_steps: Sequence[np.ndarray]) -> np.ndarray:
         """Sum of squares in every pool (p,) after steps.
 
         Args:
             step: Coefficients of all columns (k,).
-            own: Steps of every decay's own unknowns.
+            own_steps: Steps of every decay's own unknowns.
         """
-        found = np.tensordot(np.outer(step, step), self.whole, 2)
-        for one, y in zip(self.own, own, strict=True):
-            cross = np.tensordot(np.outer(y, step), one.cross, 2)
-            found[one.at] += 2 * cross + np.tensordot(np.outer(y, y), one.inner, 2)
-        return np.maximum(found, 0.0)  # rounding
+        squares = np.tensordot(np.outer(step, step), self.whole, 2)
+        for products, y in zip(self.own, own_steps, strict=True):
+            cross = np.tensordot(np.outer(y, step), products.cross, 2)
+            squares[products.pools] += 2 * cross + np.tensordot(np.outer(y, y), products.inner, 2)
+        return np.maximum(squares, 0.0)  # rounding

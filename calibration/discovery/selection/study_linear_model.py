@@ -36,12 +36,12 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
     nuisance = base & np.isin(directions, study.index(fits.setup.nuisances))
     low = np.where(nuisance, np.minimum(np.maximum(low, -MAX_NUISANCE * width - now), 0.0), low)
     high = np.where(nuisance, np.maximum(np.minimum(high, MAX_NUISANCE * width - now), 0.0), high)
-    positive = {label for one in fits.setup.candidates for label in one.positive}
+    positive = {label for candidate in fits.setup.candidates for label in candidate.positive}
     signed = ~base & np.isin(names, sorted(positive))
     low = np.where(signed, np.maximum(low, -now), low)
-    amplitudes = {label for one in fits.setup.candidates for label in one.amplitudes}
+    amplitudes = {label for candidate in fits.setup.candidates for label in candidate.amplitudes}
     sized = ~base & ~further & np.isin(names, sorted(amplitudes))
-    expected = np.array([sizes[n][0] if one else 0.0 for n, one in zip(names, sized)])
+    expected = np.array([sizes[n][0] if is_sized else 0.0 for n, is_sized in zip(names, sized)])
     used = study.used[study.row_series]
     return LinearModel(
         slopes,
@@ -78,7 +78,7 @@ def decays_with_unknowns(study: Study, look: Linearisation, fitted: bool) -> Ite
 
 def own_unknowns(study: Study, look: Linearisation) -> tuple[OwnUnknowns, ...]:
     """The fitted decays' own unknowns."""
-    return tuple(own for _, own, _ in decays_with_unknowns(study, look, True))
+    return tuple(unknowns for _, unknowns, _ in decays_with_unknowns(study, look, True))
 
 
 def step_of_decays(study: Study, look: Linearisation, steps: Sequence[np.ndarray]) -> np.ndarray:

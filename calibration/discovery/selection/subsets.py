@@ -79,10 +79,13 @@ class Selection:
 
     @property
     def best(self) -> Subset:
-        """Of the answers that are not clearly worse than the first, the most probable one with the fewest effects."""
+        """Answer with the fewest effects among those that are not clearly worse than the first.
+
+        Of several with as few effects, it is the most probable. `STRONG_EVIDENCE` defines what is clearly worse.
+        """
         answers = self.answers or self.subsets
-        near = [one for one in answers if one.evidence > answers[0].evidence - STRONG_EVIDENCE]
-        return min(near, key=lambda one: (len(one.variants), -one.evidence))
+        near = [subset for subset in answers if subset.evidence > answers[0].evidence - STRONG_EVIDENCE]
+        return min(near, key=lambda subset: (len(subset.variants), -subset.evidence))
 
     def names(self, subset: Subset) -> tuple[str, ...]:
         """Names of a subset's effects."""
@@ -90,15 +93,17 @@ class Selection:
 
     def probability(self) -> dict[str, float]:
         """Posterior probability of every effect that is in any subset."""
-        found: dict[str, float] = {}
+        probabilities: dict[str, float] = {}
         for subset, weight in zip(self.subsets, self.weights, strict=True):
             for name in self.names(subset):
-                found[name] = found.get(name, 0.0) + float(weight)
-        return dict(sorted(found.items(), key=lambda item: -item[1]))
+                probabilities[name] = probabilities.get(name, 0.0) + float(weight)
+        return dict(sorted(probabilities.items(), key=lambda item: -item[1]))
 
 
 def bagged_posterior(subsets: Sequence[Subset], series: np.ndarray, used: np.ndarray) -> np.ndarray:
-    """Posterior probability of subsets, averaged over resampled series; over resampled pools where series are few.
+    """Posterior probability of subsets, averaged over resampled series.
+
+    Where there are fewer series than `MIN_SERIES`, pools are resampled instead.
 
     Args:
         subsets: The subsets.
@@ -108,8 +113,8 @@ def bagged_posterior(subsets: Sequence[Subset], series: np.ndarray, used: np.nda
     few = len(np.unique(series[used])) < MIN_SERIES
     unit = np.arange(len(series)) if few else series
     mine = np.unique(unit[used])
-    deviance = np.array([np.bincount(unit, one.fit.deviance, unit.max() + 1)[mine] for one in subsets])
-    constant = np.array([one.evidence for one in subsets]) + 0.5 * deviance.sum(axis=1)
+    deviance = np.array([np.bincount(unit, subset.fit.deviance, unit.max() + 1)[mine] for subset in subsets])
+    constant = np.array([subset.evidence for subset in subsets]) + 0.5 * deviance.sum(axis=1)
     count = np.random.default_rng(SEED).multinomial(len(mine), np.full(len(mine), 1 / len(mine)), RESAMPLES)
     log = constant[:, None] - 0.5 * deviance @ count.T
     weight = np.exp(log - log.max(axis=0))
