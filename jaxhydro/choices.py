@@ -17,35 +17,35 @@ class UnknownName(KeyError, ValueError):
         return str(self.args[0]) if self.args else ""
 
 
-def nearest(word: object, known: Iterable[str]) -> str:
-    """Known word nearest to `word`, ignoring case; empty where none is near, or where `word` is no text."""
+def nearest(word: object, names: Iterable[str]) -> str:
+    """Name nearest to `word`, ignoring case; empty where none is near, or where `word` is no text."""
     if not isinstance(word, str):
         return ""
-    by_lower = {name.lower(): name for name in known}
+    by_lower = {name.lower(): name for name in names}
     near = difflib.get_close_matches(word[:80].lower(), by_lower, n=1, cutoff=MIN_SIMILARITY)
     return by_lower[near[0]] if near else ""
 
 
-def unknown(kind: str, word: object, known: Iterable[str], hint: str = "") -> UnknownName:
+def unknown(kind: str, word: object, names: Iterable[str], hint: str = "") -> UnknownName:
     """Error of an unknown name, such as `no degree of freedom 'pich'; ... Did you mean 'pitch'?`.
 
     Args:
-        kind: What the name is of.
+        kind: Kind of thing that the name is of, such as `degree of freedom`.
         word: The name.
-        known: Known names.
+        names: Known names.
         hint: Hint in place of the nearest name.
     """
-    known = list(known)
-    listed = ", ".join(known[:MAX_LISTED_WORDS]) + (", ..." if len(known) > MAX_LISTED_WORDS else "") or "none"
-    near = nearest(word, known)
+    names = list(names)
+    listed = ", ".join(names[:MAX_LISTED_WORDS]) + (", ..." if len(names) > MAX_LISTED_WORDS else "") or "none"
+    near = nearest(word, names)
     hint = hint or (f"Did you mean {near!r}?" if near else "")
     return UnknownName(f"no {kind} {word!r}; there are: {listed}" + (f". {hint}" if hint else ""))
 
 
-def _same(value: Any, one: Any) -> bool:
+def _same(value: Any, choice: Any) -> bool:
     """Whether a value is one of those allowed; True is not 1."""
     plain = value is None or isinstance(value, str | bool | int | float | np.generic)
-    return plain and isinstance(value, bool | np.bool_) == isinstance(one, bool) and bool(value == one)
+    return plain and isinstance(value, bool | np.bool_) == isinstance(choice, bool) and bool(value == choice)
 
 
 def check(**chosen: tuple[Any, Iterable[Any]]) -> None:
@@ -56,8 +56,8 @@ def check(**chosen: tuple[Any, Iterable[Any]]) -> None:
     """
     for name, (value, allowed) in chosen.items():
         allowed = tuple(allowed)
-        if any(_same(value, one) for one in allowed):
+        if any(_same(value, choice) for choice in allowed):
             continue
         listed = " or ".join(filter(None, (", ".join(map(repr, allowed[:-1])), repr(allowed[-1]))))
-        near = nearest(value, [one for one in allowed if isinstance(one, str)])
+        near = nearest(value, [choice for choice in allowed if isinstance(choice, str)])
         raise UnknownName(f"{name}: expected {listed}, found {value!r}" + (f". Did you mean {near!r}?" if near else ""))

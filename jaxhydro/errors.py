@@ -111,9 +111,9 @@ class Faults(ValueError):
         super().__init__("; ".join(map(str, problems)))
 
 
-def suggest(word: object, known: Iterable[str]) -> str:
+def suggest(word: object, names: Iterable[str]) -> str:
     """Hint for a misspelt word, such as `Did you mean 'heading'?`; empty where no known word is near."""
-    near = nearest(word, known)
+    near = nearest(word, names)
     return f"Did you mean '{near}'?" if near else ""
 
 
@@ -127,8 +127,8 @@ def suggest_path(path: str | PathLike[str]) -> str:
         entries = sorted(missing.parent.iterdir(), key=lambda entry: (entry.suffix == missing.suffix, entry.name))
         stems = {entry.stem: entry for entry in entries}
         near = nearest(missing.stem, stems)
-        found = missing.with_name(stems[near].name) / path.relative_to(missing) if near else missing
-        return f"Did you mean '{found}'?" if near and found.exists() else ""
+        suggestion = missing.with_name(stems[near].name) / path.relative_to(missing) if near else missing
+        return f"Did you mean '{suggestion}'?" if near and suggestion.exists() else ""
     except (OSError, ValueError):  # a folder that cannot be read, a name that no file can have
         return ""
 
@@ -189,11 +189,11 @@ def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        said = " ".join(str(error.problem or error.context).split()).removeprefix("but ")[:160]
+        mistake = " ".join(str(error.problem or error.context).split()).removeprefix("but ")[:160]
         if isinstance(error, DuplicateKeyError):
-            raise wrong(where, "each key once", said.removeprefix("found ")) from None
-        hint = "Indent by spaces: YAML takes no tabs." if "'\\t'" in said else ""
-        raise wrong(where, "valid YAML", f"a mistake in its syntax ({said})", hint) from None
+            raise wrong(where, "each key once", mistake.removeprefix("found ")) from None
+        hint = "Indent by spaces: YAML takes no tabs." if "'\\t'" in mistake else ""
+        raise wrong(where, "valid YAML", f"a mistake in its syntax ({mistake})", hint) from None
     except ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
         raise wrong(f"line {line}", "text", f"the control character 0x{ord(text[error.position]):02x}") from None
@@ -232,43 +232,43 @@ def validate(model_class: type[M], data: object, source: str) -> M:
         loc = detail["loc"]
         if detail["type"] == "too_short" and any(d["loc"][: len(loc)] == loc != d["loc"] for d in details):
             continue  # pydantic counts only the elements that are right
-        at = locate(model_class, data, detail)
-        problems += _told(detail, at)
+        location = locate(model_class, data, detail)
+        problems += _told(detail, location)
         if detail["type"] == "extra_forbidden":
-            misspelt.add(dotted(at.where.rpartition(".")[0], nearest(loc[-1], at.known)))
+            misspelt.add(dotted(location.where.rpartition(".")[0], nearest(loc[-1], location.keys)))
     raise InputError(source, dict.fromkeys(p for p in problems if p.found != "nothing" or p.where not in misspelt))
 
 
-def _told(detail: Any, at: SchemaLocation) -> Iterator[Problem]:
+def _told(detail: Any, location: SchemaLocation) -> Iterator[Problem]:
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, Faults):
         for problem in cause.problems:
-            yield replace(problem, where=dotted(at.where, problem.where))
+            yield replace(problem, where=dotted(location.where, problem.where))
     elif cause is not None:
-        yield Problem(at.where, str(cause), shown(at.value))
+        yield Problem(location.where, str(cause), shown(location.value))
     elif detail["type"] in ("extra_forbidden", "invalid_key"):
         key = detail["loc"][-1]
-        yield Problem(at.where, f"a known key ({', '.join(at.known)})", shown(key), suggest(key, at.known))
+        yield Problem(location.where, f"a known key ({', '.join(location.keys)})", shown(key), suggest(key, location.keys))
     elif "[key]" in detail["loc"]:
-        yield Problem(at.where, "a key that is text", shown(detail["loc"][-2]), "Put it in quotes.")
-    elif detail["type"].startswith("union_tag") and isinstance(at.value, dict):
+        yield Problem(location.where, "a key that is text", shown(detail["loc"][-2]), "Put it in quotes.")
+    elif detail["type"].startswith("union_tag") and isinstance(location.value, dict):
         key = detail["ctx"]["discriminator"].strip("'")
-        tags = [str(tag) for arm in arms_of(bare(at.kind, at.notes)[0]) for tag in tags_of(arm)]
-        value = at.value.get(key)
-        yield Problem(dotted(at.where, key), f"one of {', '.join(tags)}", shown(value), suggest(value, tags))
+        tags = [str(tag) for arm in arms_of(bare(location.kind, location.notes)[0]) for tag in tags_of(arm)]
+        value = location.value.get(key)
+        yield Problem(dotted(location.where, key), f"one of {', '.join(tags)}", shown(value), suggest(value, tags))
     else:
-        expected = at.description or words(at.kind, at.notes)
+        expected = location.description or words(location.kind, location.notes)
         if detail["type"] == "finite_number":
             expected = expected.replace("a number", "a finite number")
         if detail["type"] == "string_too_short":
             expected += " that is not empty"
         elif detail["type"] == "too_short":
             expected += f" ({detail['ctx']['min_length']} or more)"
-        yield Problem(at.where, expected, shown(at.value), _way_out(detail, at))
+        yield Problem(location.where, expected, shown(location.value), _way_out(detail, location))
 
 
-def _way_out(detail: Any, at: SchemaLocation) -> str:
-    kind, value = bare(at.kind, at.notes)[0], at.value
+def _way_out(detail: Any, location: SchemaLocation) -> str:
+    kind, value = bare(location.kind, location.notes)[0], location.value
     if options := choices_of(kind):
         return suggest(value, options)
     if kind is str and value is not None and not isinstance(value, dict | list | str):

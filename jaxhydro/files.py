@@ -28,11 +28,14 @@ def is_there(path: Path) -> bool:
 def embedded_campaigns() -> dict[str, Path]:
     """Folders of the campaigns that come with the package, by name."""
     folder = Path(__file__).parent / "campaigns"
-    return {one.name: one for one in sorted(folder.iterdir()) if (one / MANIFEST).is_file()}
+    return {entry.name: entry for entry in sorted(folder.iterdir()) if (entry / MANIFEST).is_file()}
 
 
 def campaign_file(path: str | os.PathLike[str]) -> Path:
-    """Path of the campaign.yaml in a campaign's folder, of the file itself, or of an embedded campaign by its name.
+    """Path of a campaign's campaign.yaml.
+
+    Args:
+        path: The campaign's folder, the file itself, or the name of an embedded campaign.
 
     Raises:
         InputError: The folder or file does not exist, or the folder has no campaign.yaml.
@@ -136,12 +139,12 @@ def safe_name(name: str) -> str:
 
 def _beside(folder: Path) -> Path:
     """New name on the file system of `folder`, in it or in its nearest existing ancestor."""
-    place = folder.absolute()
-    while not place.exists():
-        place = place.parent
-    if not place.is_dir():
-        raise NotADirectoryError(20, f"{str(place)!r} is a file")
-    return place / f".jaxhydro-{secrets.token_hex(6)}"
+    ancestor = folder.absolute()
+    while not ancestor.exists():
+        ancestor = ancestor.parent
+    if not ancestor.is_dir():
+        raise NotADirectoryError(20, f"{str(ancestor)!r} is a file")
+    return ancestor / f".jaxhydro-{secrets.token_hex(6)}"
 
 
 def _place(temporary: Path, folder: Path, stale: list[str]) -> None:
@@ -177,6 +180,6 @@ def _place(temporary: Path, folder: Path, stale: list[str]) -> None:
 
 
 def _unwritable(folder: Path, error: Exception, option: str = "") -> InputError:
-    said = str(getattr(error, "strerror", None) or error)
-    found = f"{str(folder)!r}, which cannot be ({said})"
+    reason = str(getattr(error, "strerror", None) or error)
+    found = f"{str(folder)!r}, which cannot be ({reason})"
     return InputError(option or "results", [Problem("", "a folder that can be written", found)])

@@ -35,13 +35,13 @@ def computed_with() -> dict[str, str]:
     """Hash of the packages' sources, versions of Python and the libraries, and precision."""
     import jax
 
-    found = {"source code": sources(), "Python": f"{sys.version_info.major}.{sys.version_info.minor}"}
+    versions = {"source code": sources(), "Python": f"{sys.version_info.major}.{sys.version_info.minor}"}
     for name in LIBRARIES:
         try:
-            found[name] = version(name)
+            versions[name] = version(name)
         except PackageNotFoundError:
-            found[name] = "none"
-    return found | {"precision": "float64" if jax.config.jax_enable_x64 else "float32"}  # type: ignore[attr-defined]
+            versions[name] = "none"
+    return versions | {"precision": "float64" if jax.config.jax_enable_x64 else "float32"}  # type: ignore[attr-defined]
 
 
 def fingerprint(*inputs: Any) -> str:
@@ -56,15 +56,15 @@ def content_hash(*inputs: Any) -> str:
     source is taken, too. Raises TypeError for what has no content that can be told.
     """
     digest = hashlib.sha256()
-    own: dict[str, None] = {}  # files that classes and functions from elsewhere are written in
-    for part in _content(inputs, own, ()):
+    source_files: dict[str, None] = {}  # files that classes and functions from elsewhere are written in
+    for part in _content(inputs, source_files, ()):
         digest.update(part + b"\0")
-    for path in own:
+    for path in source_files:
         digest.update(Path(path).read_bytes() + b"\0")
     return digest.hexdigest()
 
 
-def _content(value: Any, own: dict[str, None], within: tuple[int, ...]) -> Iterator[bytes]:
+def _content(value: Any, source_files: dict[str, None], within: tuple[int, ...]) -> Iterator[bytes]:
     """The content of a value, piece by piece; `within` are the ids of what holds it."""
     if value is None or type(value) in (bool, int, float, complex, str, bytes):
         yield f"{type(value).__name__} {value!r}".encode()
@@ -73,39 +73,39 @@ def _content(value: Any, own: dict[str, None], within: tuple[int, ...]) -> Itera
         yield b"itself"
         return
     within = (*within, id(value))
-    yield _named(type(value), own)
+    yield _named(type(value), source_files)
     if isinstance(value, PurePath):
         yield Path(value).read_bytes() if Path(value).is_file() else b"no file"
     elif isinstance(value, np.ndarray | np.generic) or _is_array(value):
         array = np.asarray(value)
         yield f"{array.dtype.str} {array.shape}".encode()
         if array.dtype == object:
-            yield from _content(array.tolist(), own, within)
+            yield from _content(array.tolist(), source_files, within)
         else:
             yield np.ascontiguousarray(array).tobytes()
     elif isinstance(value, Enum | np.dtype | slice | int | float | complex | str | bytes):
         yield repr(value).encode()
     elif isinstance(value, Mapping):
-        for key, one in value.items():
-            yield from _content(key, own, within)
-            yield from _content(one, own, within)
+        for key, item in value.items():
+            yield from _content(key, source_files, within)
+            yield from _content(item, source_files, within)
     elif isinstance(value, list | tuple):
-        for one in value:
-            yield from _content(one, own, within)
+        for item in value:
+            yield from _content(item, source_files, within)
     elif isinstance(value, Set):
-        yield from sorted(b"\1".join(_content(one, own, within)) for one in value)
+        yield from sorted(b"\1".join(_content(item, source_files, within)) for item in value)
     elif isinstance(value, functools.partial):
-        yield from _content((value.func, value.args, value.keywords), own, within)
+        yield from _content((value.func, value.args, value.keywords), source_files, within)
     elif isinstance(value, type):
-        yield _named(value, own)
+        yield _named(value, source_files)
     elif inspect.ismethod(value):
-        yield from _content((value.__func__, value.__self__), own, within)
+        yield from _content((value.__func__, value.__self__), source_files, within)
     elif inspect.isroutine(value) or inspect.isfunction(inspect.unwrap(value) if callable(value) else value):
-        yield from _of_function(value, own, within)
+        yield from _of_function(value, source_files, within)
     elif dataclasses.is_dataclass(value):
-        yield from _content({f.name: getattr(value, f.name, None) for f in dataclasses.fields(value)}, own, within)
+        yield from _content({f.name: getattr(value, f.name, None) for f in dataclasses.fields(value)}, source_files, within)
     elif hasattr(value, "__dict__"):
-        yield from _content(vars(value), own, within)
+        yield from _content(vars(value), source_files, within)
     else:
         raise TypeError(f"the content of {type(value).__qualname__} cannot be told: {value!r:.80}")
 
@@ -116,15 +116,15 @@ def _is_array(value: Any) -> bool:
     return isinstance(value, jax.Array)
 
 
-def _of_function(value: Callable[..., Any], own: dict[str, None], within: tuple[int, ...]) -> Iterator[bytes]:
+def _of_function(value: Callable[..., Any], source_files: dict[str, None], within: tuple[int, ...]) -> Iterator[bytes]:
     """A function by its name, its source where that is not the packages', and what it remembers."""
     inner = inspect.unwrap(value)
-    yield _named(inner, own)
+    yield _named(inner, source_files)
     if (code := getattr(inner, "__code__", None)) is not None:
         yield from _code(code)
         for cell in getattr(inner, "__closure__", None) or ():
-            yield from _content(cell.cell_contents, own, within)
-        yield from _content((inner.__defaults__, inner.__kwdefaults__), own, within)
+            yield from _content(cell.cell_contents, source_files, within)
+        yield from _content((inner.__defaults__, inner.__kwdefaults__), source_files, within)
 
 
 def _code(code: CodeType) -> Iterator[bytes]:
@@ -137,15 +137,18 @@ def _code(code: CodeType) -> Iterator[bytes]:
             yield repr(sorted(constant, key=repr) if isinstance(constant, frozenset) else constant).encode()
 
 
-def _named(one: Any, own: dict[str, None]) -> bytes:
-    """Name of a class or function; the file of one that is no library's and not the packages' is noted in `own`."""
-    module = str(getattr(one, "__module__", "") or "")
+def _named(definition: Any, source_files: dict[str, None]) -> bytes:
+    """Name of a class or function.
+
+    Its file is noted in `source_files` where it is neither a library's nor the packages' own.
+    """
+    module = str(getattr(definition, "__module__", "") or "")
     root = module.split(".")[0]
     if root not in PACKAGES and root not in sys.stdlib_module_names:
         try:
-            file = inspect.getsourcefile(one)
+            file = inspect.getsourcefile(definition)
         except TypeError:
             file = None
         if file and "site-packages" not in Path(file).parts and Path(file).is_file():
-            own[file] = None
-    return f"{module}.{getattr(one, '__qualname__', one)}".encode()
+            source_files[file] = None
+    return f"{module}.{getattr(definition, '__qualname__', definition)}".encode()

@@ -18,8 +18,10 @@ _pending = threading.Event()  # asked, and nobody has dealt with it yet
 
 @contextmanager
 def ended_by_signals() -> Iterator[None]:
-    """Within it both signals raise KeyboardInterrupt: a little later where that would be lost. What else may swallow it is for
-    `stop_if_asked`."""
+    """Context in which the stop signals raise KeyboardInterrupt.
+
+    Where it would be lost, it is raised a little later. Where other code may swallow it, see `stop_if_asked`.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -34,19 +36,19 @@ def ended_by_signals() -> Iterator[None]:
 
     _asked.clear()
     _pending.clear()
-    before = {one: signal.signal(one, stop) for one in STOP_SIGNALS}
+    before = {stop_signal: signal.signal(stop_signal, stop) for stop_signal in STOP_SIGNALS}
     try:
         yield
     finally:
-        for one, handler in before.items():
-            signal.signal(one, handler)
+        for stop_signal, handler in before.items():
+            signal.signal(stop_signal, handler)
 
 
 def finished() -> None:
-    """All is written: until the end of `ended_by_signals` signals change nothing."""
+    """Ignore signals until the end of `ended_by_signals`: all is written."""
     if threading.current_thread() is threading.main_thread():
-        for one in STOP_SIGNALS:
-            signal.signal(one, signal.SIG_IGN)
+        for stop_signal in STOP_SIGNALS:
+            signal.signal(stop_signal, signal.SIG_IGN)
 
 
 def asked_to_stop() -> bool:

@@ -10,13 +10,13 @@ from pydantic import BaseModel, RootModel, Tag
 
 @dataclass(frozen=True)
 class SchemaLocation:
-    """Where an error points: path in the file, declared type, value, and the keys known beside it."""
+    """Where an error points: path in the file, declared type, value, and the keys allowed beside it."""
 
     where: str
     kind: Any
     notes: tuple[Any, ...]
     value: Any
-    known: tuple[str, ...] = ()
+    keys: tuple[str, ...] = ()
     description: str | None = None
 
 
@@ -25,36 +25,36 @@ def locate(model: Any, data: Any, detail: Any) -> SchemaLocation:
     loc, lacks = [item for item in detail["loc"] if item != "[key]"], detail["type"] == "missing"
     if lacks and loc and isinstance(loc[-1], int):  # an element of a tuple: the tuple is what is wrong
         loc, lacks = loc[:-1], False
-    here = SchemaLocation("", model, (), data)
+    location = SchemaLocation("", model, (), data)
     for i, item in enumerate(loc):
-        kind, notes = bare(here.kind, here.notes)
+        kind, notes = bare(location.kind, location.notes)
         arm = next((arm for arm in arms_of(kind) if item in tags_of(arm)), None)
         if arm is not None:
-            here = replace(here, kind=arm, notes=(), known=())
+            location = replace(location, kind=arm, notes=(), keys=())
             continue
-        value, name = here.value, dotted(here.where, item)
+        value, name = location.value, dotted(location.where, item)
         if isinstance(value, dict) and item in value:
             value = value[item]
         elif isinstance(value, list) and isinstance(item, int) and item < len(value):
-            value, name = value[item], f"{here.where}[{item}]"
+            value, name = value[item], f"{location.where}[{item}]"
         elif lacks and i == len(loc) - 1:
             value = None
         else:
-            name = here.where
-        known: tuple[str, ...] = ()
+            name = location.where
+        keys: tuple[str, ...] = ()
         description = None
         if isinstance(kind, type) and issubclass(kind, RootModel):
             kind, notes = bare(kind.model_fields["root"].annotation, ())
         if isinstance(kind, type) and issubclass(kind, BaseModel):
             fields = {field.alias or key: field for key, field in kind.model_fields.items()}
-            known, field = tuple(fields), fields.get(str(item))
+            keys, field = tuple(fields), fields.get(str(item))
             others = get_args(kind.__annotations__.get("__pydantic_extra__")) or (str, Any)  # of keys that are not declared
             kind, notes = (field.annotation, tuple(field.metadata)) if field else (others[1], ())
             description = field.description if field else None
         elif args := get_args(kind):  # the values of a mapping; the elements of a list are all of one type
             kind, notes = args[1 if get_origin(kind) is dict else 0], ()
-        here = SchemaLocation(name, kind, notes, value, known, description)
-    return here
+        location = SchemaLocation(name, kind, notes, value, keys, description)
+    return location
 
 
 def dotted(parent: str, item: object) -> str:
@@ -96,7 +96,7 @@ def tags_of(arm: Any) -> tuple[Any, ...]:
 def choices_of(kind: Any) -> tuple[str, ...]:
     """The words of a Literal or of an enumeration; empty for other types."""
     if isinstance(kind, type) and issubclass(kind, Enum):
-        return tuple(str(one.value) for one in kind)
+        return tuple(str(member.value) for member in kind)
     return tuple(map(str, get_args(kind))) if get_origin(kind) is Literal else ()
 
 

@@ -67,20 +67,20 @@ def parse_unit(text: str) -> Unit:
     parts = [part.strip("() ") for part in text.replace("**", "^").translate(_SUPERSCRIPTS).split("/")]
     for i, part in enumerate(parts):
         for name in [] if i == 0 and part in ("-", "1") else part.split() or [part]:
-            found = _FACTOR.fullmatch(name)
-            if found is None or found[1] not in SYMBOLS:
-                raise UnknownUnit(found[1] if found else name)
-            power = int(found[2] or 1) * (-1 if i else 1)
-            size, base = SYMBOLS[found[1]]
+            match = _FACTOR.fullmatch(name)
+            if match is None or match[1] not in SYMBOLS:
+                raise UnknownUnit(match[1] if match else name)
+            power = int(match[2] or 1) * (-1 if i else 1)
+            size, base = SYMBOLS[match[1]]
             factor *= size**power
-            powers = [one + power * other for one, other in zip(powers, base, strict=True)]
+            powers = [total + power * exponent for total, exponent in zip(powers, base, strict=True)]
     return Unit(factor, tuple(powers))
 
 
 def split_quantity(text: str) -> tuple[float, str] | None:
     """Number and unit of a text such as "0.3 m" or "2 %"; None where it is no finite number with a unit."""
-    found = _QUANTITY.fullmatch(text.strip())
-    return (float(found[1]), found[2]) if found and np.isfinite(float(found[1])) else None
+    match = _QUANTITY.fullmatch(text.strip())
+    return (float(match[1]), match[2]) if match and np.isfinite(float(match[1])) else None
 
 
 def rounded_up(value: float, digits: int = 2) -> float:

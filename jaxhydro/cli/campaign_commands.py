@@ -1,4 +1,7 @@
-"""Commands on a campaign: folder, calibration, diagnosis, uncertainty, pages; each imports what it needs."""
+"""Commands on a campaign: folder, check, calibration, diagnosis, uncertainty and report page.
+
+Each command imports what it needs.
+"""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -42,7 +45,7 @@ def init(
         float | None, typer.Option(help="Froude length scale of the records: 70 for a model at 1:70.", show_default="1")
     ] = None,
 ) -> None:
-    """Make a campaign folder to calibrate to: platform.yaml, a commented campaign.yaml, and your data files.
+    """Make a campaign folder: platform.yaml, a commented campaign.yaml, and your data files.
 
     Columns, units, kinds of tests and released motions are guessed from the data files. Each guess is marked CHECK in
     campaign.yaml. Without data files, campaign.yaml is an example to edit.
@@ -59,7 +62,10 @@ def check(
     campaign: arguments.Campaign,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for figures of the hull and of every record.")] = None,
 ) -> None:
-    """Read a campaign and show what it holds: tests, natural periods beside the model's, warnings. Nothing is fitted."""
+    """Read a campaign and show its tests, natural periods beside the model's, and warnings.
+
+    Nothing is fitted.
+    """
     campaign_file(campaign)
     drawn = None if out is None else options.check_folder(out)
     from calibration.commands.check_command import check_campaign
@@ -82,8 +88,8 @@ def calibrate(
 ) -> None:
     """Fit a platform's coefficients to the tests marked `fit`: calibration.json, simulated.nc, figures.
 
-    To the free decays where there are any, else to the tests in irregular and regular waves; with `--tests all` to both
-    together, to static offsets and to natural periods that the manifest states.
+    The free decays are fitted where there are any, else the tests in irregular and regular waves. With `--tests all` both are
+    fitted together, with static offsets and the natural periods that the manifest states.
     """
     kind = None if tests is None else tests.value
     how: dict[str, Any] = {"objective": objective.value, "law": law.value.replace("-", "_"), "loss": loss.value, "start": start}
@@ -96,7 +102,9 @@ def diagnose(
     out: arguments.Out = None,
     figures: arguments.Figures = True,
 ) -> None:
-    """Fit a platform's coefficients, then find what the model lacks: an effect with its name, its size and the evidence.
+    """Fit a platform's coefficients, then find the effects that the model lacks.
+
+    Each effect is found with its name, its size and the evidence.
 
     The model is first fitted to the tests marked `fit`: this is the baseline. All effects that could be missing are then
     compared, alone and together. Each effect of the most probable set is taken out in turn. It stays only where the tests
@@ -123,10 +131,10 @@ def uncertainty(
     seed: arguments.DrawSeed = 0,
     figures: arguments.Figures = True,
 ) -> None:
-    """How well a calibration of free decays knows its coefficients: intervals with errors taken as they are.
+    """Uncertainty of the coefficients that a calibration of free decays found, as intervals.
 
-    What is left of a fit is mostly the model's own error, and lasts from sample to sample: it is coloured. Intervals of the
-    fit's covariance allow for it; on request also profiles of the likelihood, a bootstrap, and draws from the posterior.
+    The residual of a fit is mostly the model's own error. It lasts from sample to sample: it is coloured. Intervals of the
+    fit's covariance allow for this. On request also profiles of the likelihood, a bootstrap, and draws from the posterior.
     """
     campaign_file(campaign)
     out = options.results_folder(out, "uncertainty.json", campaign)
@@ -143,7 +151,7 @@ def report(
         typer.Argument(help="A folder that `jaxhydro simulate`, `calibrate`, `diagnose`, `uncertainty` or `sweep` wrote."),
     ],
 ) -> None:
-    """Make one self-contained HTML page, report.html, of what is in a result folder."""
+    """Make one self-contained HTML page, report.html, of a result folder."""
     options.check_results(folder)
     from calibration.report.write_report import write_report
 
@@ -151,7 +159,10 @@ def report(
 
 
 def demo(out: Annotated[Path, typer.Option("--out", help=arguments.OUT)] = Path("jaxhydro-demo")) -> None:
-    """Calibrate to the nine embedded decays of VolturnUS-S, compare with the true coefficients, make a page."""
+    """Calibrate to the nine embedded decays of VolturnUS-S and compare with the true coefficients.
+
+    A report page is made, too.
+    """
     from importlib import resources
 
     folder = Path(str(resources.files("jaxhydro") / "campaigns" / DEMO))

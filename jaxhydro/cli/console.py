@@ -45,7 +45,7 @@ def complain(message: str) -> None:
 
 @contextmanager
 def warnings_told() -> Iterator[None]:
-    """Within it, warnings of this package are printed as its messages are, each once."""
+    """Context in which this package's warnings are printed as its messages are, each once."""
     shown, told = warnings.showwarning, set[str]()
 
     def show(message: Any, category: type[Warning], *where: Any) -> None:
@@ -63,10 +63,10 @@ def warnings_told() -> Iterator[None]:
 
 
 def table(title: str, heads: Iterable[str], rows: Iterable[Iterable[str]], left: int = 1, stderr: bool = False) -> None:
-    """Print a table; columns from the `left`-th on are numbers.
+    """Print a table whose first `left` columns are text, and the others numbers.
 
-    Long cells are wrapped between words. Words stay whole, since names and labels are typed again, and a table of many
-    columns may be wider than the terminal for that.
+    Long cells are wrapped between words. Words stay whole, since names and labels are typed again. A table of many columns
+    may be wider than the terminal for that.
     """
     shown = console(stderr)
     lines = [list(heads), *(list(row) for row in rows)]
@@ -112,9 +112,12 @@ def _between(columns: Sequence[Sequence[str]], gap: int) -> int:
 
 @contextmanager
 def progress() -> Iterator[Callable[[Any], None]]:
-    """A line on standard error with the progress of a calibration: stage, iteration, objective, time gone and left.
+    """Line on standard error with the progress of a calibration.
 
-    Without a terminal it is one line per stage.
+    It has the stage, iteration, objective, time gone and time left. Without a terminal it is one line per stage.
+
+    Yields:
+        A function to call with the progress.
     """
     shown, begun, furthest = console(stderr=True), clock.monotonic(), 0.0
 
@@ -135,8 +138,8 @@ def progress() -> Iterator[Callable[[Any], None]]:
             furthest = max(furthest, now.fraction)
             if now.stage not in stages:
                 stages.append(now.stage)
-                said = ": ".join(filter(None, (now.stage, _reached(now))))
-                shown.print(Text("; ".join(filter(None, (said, left(furthest))))), soft_wrap=True)
+                status = ": ".join(filter(None, (now.stage, _reached(now))))
+                shown.print(Text("; ".join(filter(None, (status, left(furthest))))), soft_wrap=True)
 
         yield note
         return
@@ -160,11 +163,18 @@ def progress() -> Iterator[Callable[[Any], None]]:
 
 
 @contextmanager
-def counting(total: int, done: int, what: str) -> Iterator[Callable[[int, str], None]]:
-    """A line on standard error with how many of `total` are done, how fast, and the time left; to be told the number and a
-    remark.
+def counting(total: int, done: int, noun: str) -> Iterator[Callable[[int, str], None]]:
+    """Line on standard error with the number of jobs done, a remark, and the time left.
 
     Without a terminal it is a line every `PROGRESS_INTERVAL` seconds, and one at the end.
+
+    Args:
+        total: Number of jobs.
+        done: Number of jobs that are done at the beginning.
+        noun: Plural of what is counted, such as `runs`.
+
+    Yields:
+        A function to call with the number of jobs done and a remark, such as their speed.
     """
     shown = console(stderr=True)
     if not shown.is_terminal:
@@ -174,11 +184,11 @@ def counting(total: int, done: int, what: str) -> Iterator[Callable[[int, str], 
             time = clock.monotonic()
             if told and now < total and time - told[-1][0] < PROGRESS_INTERVAL:
                 return
-            left = ""
+            time_left = ""
             if told and now > told[0][1]:  # the first one takes compilation along
-                left = f", {_span((time - told[0][0]) * (total - now) / (now - told[0][1]))} left"
+                time_left = f", {_span((time - told[0][0]) * (total - now) / (now - told[0][1]))} left"
             told.append((time, now))
-            shown.print(Text(f"{now} of {total} {what}, {remark}{left}"), soft_wrap=True)
+            shown.print(Text(f"{now} of {total} {noun}, {remark}{time_left}"), soft_wrap=True)
 
         yield note
         return
@@ -191,7 +201,7 @@ def counting(total: int, done: int, what: str) -> Iterator[Callable[[int, str], 
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=shown, transient=True) as bar:
-        task = bar.add_task(what, total=total, completed=done, remark="compiling")
+        task = bar.add_task(noun, total=total, completed=done, remark="compiling")
         yield lambda now, remark: bar.update(task, completed=now, remark=remark)
 
 

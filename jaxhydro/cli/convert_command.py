@@ -69,8 +69,8 @@ def print_losses(items: Sequence[ConvertedItem]) -> None:
         say(f"approximated: {item.source}: {item.meaning}")
     if len(close) > MAX_TOLD:
         say(f"and {len(close) - MAX_TOLD} more.")
-    if left := [item.source for item in items if item.treatment is Treatment.LEFT_OUT and not item.warning]:
-        say(f"left out: {'; '.join(left)}.")
+    if left_out := [item.source for item in items if item.treatment is Treatment.LEFT_OUT and not item.warning]:
+        say(f"left out: {'; '.join(left_out)}.")
 
 
 def _print(conversion: Conversion, model: Model, source: Path, folder: Path) -> None:

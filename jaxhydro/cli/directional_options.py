@@ -25,75 +25,79 @@ def check_exponent(value: float, option: str, key: str = "") -> float:
 
 def system(text: str) -> WaveSystem:
     """Wave system of a text such as `hs=2 tp=14 heading=30`. Raises BadParameter."""
-    found: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     for word in text.replace(",", " ").split():
         key, equals, value = word.partition("=")
         if key not in KEYS or not equals:
             raise wrong("--sea", f"{', '.join(KEYS)} expected, as {EXAMPLE}; found {word!r}. {suggest(key, KEYS)}".strip())
-        if key in found:
+        if key in fields:
             raise wrong("--sea", f"{key} is given twice in {text!r}")
         if key == "spectrum":
             if value not in SHAPES:
                 raise wrong("--sea", f"spectrum={' or '.join(SHAPES)} expected, found {value!r}")
-            found[key] = value
+            fields[key] = value
             continue
         try:
-            found[key] = finite(float(value), "--sea")
+            fields[key] = finite(float(value), "--sea")
         except ValueError:
             raise wrong("--sea", f"a number after {key}= expected, found {value!r}") from None
     for key in ("hs", "tp"):
-        if key not in found:
+        if key not in fields:
             raise wrong("--sea", f"{key} expected, as {EXAMPLE}; found {text!r}")
-        positive(found[key], "--sea", f"{key}: ")
-    if "gamma" in found and found.get("spectrum", SHAPES[0]) != SHAPES[0]:
-        raise wrong("--sea", f"gamma: a JONSWAP spectrum expected with it, found {found['spectrum']}")
-    if "gamma" in found and not 1 <= found["gamma"] <= MAX_ENHANCEMENT:
-        raise wrong("--sea", f"gamma: from 1 to {MAX_ENHANCEMENT:g} expected, found {found['gamma']:g}")
-    if "spreading" in found:
-        check_exponent(found["spreading"], "--sea", "spreading: ")
-    return WaveSystem(**found)
+        positive(fields[key], "--sea", f"{key}: ")
+    if "gamma" in fields and fields.get("spectrum", SHAPES[0]) != SHAPES[0]:
+        raise wrong("--sea", f"gamma: a JONSWAP spectrum expected with it, found {fields['spectrum']}")
+    if "gamma" in fields and not 1 <= fields["gamma"] <= MAX_ENHANCEMENT:
+        raise wrong("--sea", f"gamma: from 1 to {MAX_ENHANCEMENT:g} expected, found {fields['gamma']:g}")
+    if "spreading" in fields:
+        check_exponent(fields["spreading"], "--sea", "spreading: ")
+    return WaveSystem(**fields)
 
 
-def asked(given: Mapping[str, Any], heading: float, options: dict[str, Any]) -> RequestedSea | None:
-    """The sea of `--sea`, `--sea-file` or `--spreading`; None where none of them is given. Raises BadParameter, InputError.
+def asked(options: Mapping[str, Any], heading: float, common: dict[str, Any]) -> RequestedSea | None:
+    """Sea of `--sea`, `--sea-file` or `--spreading`; None without any of them.
 
     Args:
-        given: Options by name, those only that are given.
+        options: Options that are given, by name.
         heading: Direction that the waves travel to (deg), of `--heading`.
-        options: Fields of `RequestedSea` that all seas have, but for the order.
+        common: Fields of `RequestedSea` that all seas have, but for the order.
+
+    Raises:
+        BadParameter: An option is wrong, or does not go with another.
+        InputError: The file of the directional spectrum cannot be used.
     """
-    many, file = given.get("--sea"), given.get("--sea-file")
+    many, file = options.get("--sea"), options.get("--sea-file")
     if many and file:
         raise wrong("--sea-file", "--sea says what the sea is: not both")
-    if "--x-bearing" in given and not file:
+    if "--x-bearing" in options and not file:
         raise wrong("--x-bearing", "a directional spectrum expected with it, --sea-file FILE")
-    if name := next((one for one in OTHERS if one in given and (many or file)), None):
+    if name := next((option for option in OTHERS if option in options and (many or file)), None):
         raise wrong(name, f"{'--sea' if many else '--sea-file'} says what the sea is: not both")
     if (many or file) and heading != 0.0:
-        other = "heading= of --sea" if many else "--x-bearing"
-        raise wrong("--heading", f"the sea has its own: {other}")
+        setting = "heading= of --sea" if many else "--x-bearing"
+        raise wrong("--heading", f"the sea has its own: {setting}")
     if file:
-        bearing = finite(given.get("--x-bearing", 0.0), "--x-bearing")
+        bearing = finite(options.get("--x-bearing", 0.0), "--x-bearing")
         measured = MeasuredDirections(str(file), read_directional_spectrum(Path(file), bearing), bearing)
         hs, tp, mean = measured.summary()
-        order = given.get("--order", 1)
-        return RequestedSea(hs, tp, None, "measured", heading=mean, measured=measured, order=order, **options)
+        order = options.get("--order", 1)
+        return RequestedSea(hs, tp, None, "measured", heading=mean, measured=measured, order=order, **common)
     if many:
         systems = tuple(system(text) for text in many)
-    elif "--spreading" in given:
-        systems = (_spread(given, heading),)
+    elif "--spreading" in options:
+        systems = (_spread(options, heading),)
     else:
         return None
-    found = RequestedSea.of_systems(systems, order=given.get("--order", 1), **options)
-    return RequestedSea.of_systems(systems, order=given.get("--order", 2), **options) if found.long_crested else found
+    sea = RequestedSea.of_systems(systems, order=options.get("--order", 1), **common)
+    return RequestedSea.of_systems(systems, order=options.get("--order", 2), **common) if sea.long_crested else sea
 
 
-def _spread(given: Mapping[str, Any], heading: float) -> WaveSystem:
+def _spread(options: Mapping[str, Any], heading: float) -> WaveSystem:
     """Wave system of `--hs`, `--tp` and `--spreading`, which were checked but for the last."""
-    if "--hs" not in given:
+    if "--hs" not in options:
         raise wrong("--spreading", "a sea expected with it: --hs 3.1 --tp 8.96")
-    shape = str(given.get("--spectrum", SHAPES[0]))
+    shape = str(options.get("--spectrum", SHAPES[0]))
     if shape not in SHAPES:
         raise wrong("--spreading", f"a spectrum with a peak expected with it, found {shape}")
-    exponent = check_exponent(given["--spreading"], "--spreading")
-    return WaveSystem(positive(given["--hs"], "--hs"), given["--tp"], given.get("--gamma"), heading, exponent, shape)
+    exponent = check_exponent(options["--spreading"], "--spreading")
+    return WaveSystem(positive(options["--hs"], "--hs"), options["--tp"], options.get("--gamma"), heading, exponent, shape)

@@ -77,55 +77,55 @@ def export_model(platform: str, folder: Path, kind: DeckFormat, calibration: Pat
             platform. Nothing is written.
     """
     check_new_folder(folder, "--out", "Name a new folder.")
-    declared = load_platform(platform)
-    model = build(declared)
+    contents = load_platform(platform)
+    model = build(contents)
     if calibration is not None:
         from jaxhydro.cli.simulate_command import calibrated
 
-        model = calibrated(model, platform, declared.name, calibration)
+        model = calibrated(model, platform, contents.name, calibration)
     writer = WRITERS[kind]
-    exported = writer.write(source_of(declared, model))
+    exported = writer.write(source_of(contents, model))
     with staged(folder) as temporary:
         for name, text in exported.texts.items():
             (temporary / name).write_text(text, encoding="utf-8")
         for name, path in exported.files.items():
             copy_whole(path, temporary / name)
-        page = items_page(f"{declared.name} as {writer.title}", exported.items, exported.files)
+        page = items_page(f"{contents.name} as {writer.title}", exported.items, exported.files)
         (temporary / PAGE).write_text(page, encoding="utf-8")
-    _print(exported, writer, declared.name, folder)
+    _print(exported, writer, contents.name, folder)
 
 
-def source_of(declared: Platform, model: Model) -> ExportSource:
-    """What another program's model is written from.
+def source_of(platform: Platform, model: Model) -> ExportSource:
+    """Source from which another program's model is written.
 
     Args:
-        declared: Contents of the platform file.
+        platform: Contents of the platform file.
         model: Its model, with calibrated values.
     """
-    mooring = declared.mooring
+    mooring = platform.mooring
     lines = mooring.line_types if isinstance(mooring, Catenary) else {}
     return ExportSource(
-        declared.name,
+        platform.name,
         model,
-        members_of(declared),
-        headings=[member.heading for member in declared.members],
+        members_of(platform),
+        headings=[member.heading for member in platform.members],
         drag_laws={label: law.model_dump(exclude_none=True) for label, law in drag_laws_of(model).items()},
-        line_diameters={kind: one.diameter for kind, one in lines.items() if one.diameter is not None},
-        seabed_depth=mooring.seabed_depth(declared.water.depth) if isinstance(mooring, Catenary) else declared.water.depth,
-        tables=_tables(declared),
+        line_diameters={kind: line_type.diameter for kind, line_type in lines.items() if line_type.diameter is not None},
+        seabed_depth=mooring.seabed_depth(platform.water.depth) if isinstance(mooring, Catenary) else platform.water.depth,
+        tables=_tables(platform),
     )
 
 
-def _tables(declared: Platform) -> Mapping[str, PotentialTable]:
-    found: dict[str, PotentialTable] = {}
+def _tables(platform: Platform) -> Mapping[str, PotentialTable]:
+    tables: dict[str, PotentialTable] = {}
     for key in ("radiation", "excitation", "drift"):
-        if (one := getattr(declared, key)) is None:
+        if (table := getattr(platform, key)) is None:
             continue
-        values: dict[str, Any] = {"by": one.by, "length": one.length or 1.0, "body": one.body}
+        values: dict[str, Any] = {"by": table.by, "length": table.length or 1.0, "body": table.body}
         if key == "drift":
-            values["approximation"] = one.approximation
-        found[key] = PotentialTable(Path(one.file), getattr(one, "kind", None) or "wamit", **values)
-    return found
+            values["approximation"] = table.approximation
+        tables[key] = PotentialTable(Path(table.file), getattr(table, "kind", None) or "wamit", **values)
+    return tables
 
 
 def _print(exported: ExportedModel, writer: Writer, name: str, folder: Path) -> None:

@@ -67,18 +67,18 @@ def simulate(
 ) -> None:
     """Motions in irregular waves, regular waves and free decays: series, statistics and figures.
 
-    With a campaign, its tests in regular and irregular waves, in the waves that were measured; only --order, --stretching,
-    --diffraction, --cutoff, --calibration and --no-figures go with one.
+    With a campaign, its tests in regular and irregular waves are simulated, in the waves that were measured. Only --order,
+    --stretching, --diffraction, --cutoff, --calibration and --no-figures go with a campaign.
     """
-    given = sea_options.by_option(ctx.params)
+    cli_options = sea_options.by_option(ctx.params)
     if sea_options.is_campaign(platform):
         campaign_file(platform)
         if formats:
             raise options.wrong("--format", "it goes with a platform; of a campaign all motions are in simulated.nc")
-        return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(given), figures)
+        return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(cli_options), figures)
     options.check_platform(platform)
     offset, regular = options.releases(release or []), options.regular(wave_height, wave_period)
-    asked = sea_options.asked(given, options.finite(heading, "--heading"))
+    asked = sea_options.asked(cli_options, options.finite(heading, "--heading"))
     if asked is not None and regular is not None:
         raise options.wrong("--wave-height", "regular waves or an irregular sea, not both")
     if asked is None and regular is None and not offset:
@@ -87,7 +87,7 @@ def simulate(
     if asked is not None and wave is not None:
         from jaxhydro.interop.data_files import read_table
 
-        asked = sea_options.with_record(asked, wave, read_table(wave), given)
+        asked = sea_options.with_record(asked, wave, read_table(wave), cli_options)
     duration = sea_options.duration(duration, asked)
     dt = options.interval(dt, "--dt", duration)
     step = None if step is None else options.interval(step, "--step", duration)
@@ -95,11 +95,11 @@ def simulate(
     from jaxhydro.cli import sea_command
     from jaxhydro.cli import simulate_command as command
 
-    one = None if asked is None else asked.heading if asked.long_crested else None  # several are checked with the sea
-    model = _model(platform, calibration, diffraction, elements, heading if regular is not None else one)
+    sea_heading = None if asked is None else asked.heading if asked.long_crested else None  # several are checked with the sea
+    model = _model(platform, calibration, diffraction, elements, heading if regular is not None else sea_heading)
     job = command.Job(platform, out, duration, dt, offset, step, figures, None if calibration is None else str(calibration))
-    job = job._replace(formats=tuple(one.value for one in formats or ()))
-    stretch = sea_options.stretching(given)
+    job = job._replace(formats=tuple(motion_format.value for motion_format in formats or ()))
+    stretch = sea_options.stretching(cli_options)
     of_regular = (regular, heading, stretch, order or 1)
     if not (command.run(model, job, *of_regular) if asked is None else sea_command.run(model, job, asked)):
         raise typer.Exit(NOT_CONVERGED)
@@ -117,7 +117,10 @@ def statics(
     ] = None,
     calibration: arguments.Calibrated = None,
 ) -> None:
-    """Rest position, natural periods, forces by load, tensions of mooring lines, stiffness. Nothing is written."""
+    """Print rest position, natural periods, forces by load, tensions of mooring lines and stiffness.
+
+    Nothing is written.
+    """
     options.check_platform(platform)
     forces = options.by_motion(force or [], "--force", "its force expected, as surge=1.5e6")
     offsets = options.releases(offset or [], "--offset")
@@ -148,7 +151,9 @@ def export(
         option_choices.DeckFormat, typer.Option("--format", help="Program that the model is written for.")
     ] = option_choices.DeckFormat.openfast,
 ) -> None:
-    """Write a platform, tuned by a calibration, as another program's model, with a page of what became of each item.
+    """Write a platform as another program's model, with a page of what became of each item.
+
+    With --calibration the platform has the calibrated values.
 
     For OpenFAST 5: main.fst, and files of ElastoDyn, HydroDyn, SeaState (still water) and, for catenaries, MoorDyn. For RAFT:
     design.yaml. For MoorDyn 2: lines.txt, the catenary lines alone.
@@ -168,9 +173,9 @@ def sweep(
     restart: Annotated[bool, typer.Option("--restart", help="Forget the runs that are in the folder.")] = False,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Do runs that failed again.")] = False,
 ) -> None:
-    """All sea states of a scatter table, with all headings and all seeds: results.zarr, lifetime statistics, figures.
+    """Simulate all sea states of a scatter table with all headings and all seeds.
 
-    Stopped or killed, the same command goes on where it was.
+    Results are results.zarr, lifetime statistics and figures. Stopped or killed, the same command goes on where it was.
     """
     out = options.results_folder(out, "sweep.json", file)
     from jaxhydro.cli import sweep_command as command
@@ -186,7 +191,10 @@ def sweep(
 def schema(
     file: Annotated[str, typer.Argument(help="campaign or platform.", show_default=False)],
 ) -> None:
-    """Print the JSON Schema of campaign.yaml or platform.yaml: editors complete keys by it and mark mistakes."""
+    """Print the JSON Schema of campaign.yaml or platform.yaml.
+
+    Editors complete keys by it and mark mistakes.
+    """
     import json
 
     from calibration.campaign.manifest import Manifest
@@ -226,8 +234,10 @@ def _model(
     from jaxhydro.platform.build import model_of
     from jaxhydro.platform.schema import load_platform
 
-    declared = load_platform(platform)
-    if heading is not None and (other := declared.of_other_waves(heading)) is not None:
-        raise options.wrong("--heading", f"{other.words} ({other.key} of the platform file) expected; found {heading:g}")
-    model = model_of(declared, diffraction, elements)
-    return model if calibration is None else calibrated(model, platform, declared.name, calibration)
+    contents = load_platform(platform)
+    if heading is not None and (other_waves := contents.of_other_waves(heading)) is not None:
+        raise options.wrong(
+            "--heading", f"{other_waves.words} ({other_waves.key} of the platform file) expected; found {heading:g}"
+        )
+    model = model_of(contents, diffraction, elements)
+    return model if calibration is None else calibrated(model, platform, contents.name, calibration)

@@ -59,19 +59,19 @@ def regular(height: float | None, period: float | None) -> tuple[float, float] |
     return positive(height, "--wave-height"), positive(period, "--wave-period")
 
 
-def by_motion(given: list[str], option: str, what: str) -> dict[str, float]:
+def by_motion(texts: list[str], option: str, meaning: str) -> dict[str, float]:
     """Numbers by motion, of texts such as `surge=5`.
 
     Args:
-        given: What was given.
+        texts: Values of the option.
         option: The option, for messages.
-        what: What the number is, with an example: "its offset expected, as surge=5".
+        meaning: Meaning of the number, with an example: "its offset expected, as surge=5".
     """
-    found: dict[str, float] = {}
-    for text in given:
+    values: dict[str, float] = {}
+    for text in texts:
         name, _, number = (part.strip() for part in text.partition("="))
         if name not in DOFS:
-            expected = f"a motion ({', '.join(DOFS)}) and {what}"
+            expected = f"a motion ({', '.join(DOFS)}) and {meaning}"
             raise wrong(option, f"{expected}; found {text!r}. {suggest(name, DOFS)}".strip())
         try:
             value = float(number)
@@ -79,15 +79,15 @@ def by_motion(given: list[str], option: str, what: str) -> dict[str, float]:
             value = math.nan
         if not math.isfinite(value):
             raise wrong(option, f"a number after {name}= expected, found {number!r}")
-        if name in found:
+        if name in values:
             raise wrong(option, f"{name} is given twice")
-        found[name] = value
-    return found
+        values[name] = value
+    return values
 
 
-def releases(given: list[str], option: str = "--release") -> dict[str, float]:
+def releases(texts: list[str], option: str = "--release") -> dict[str, float]:
     """Offsets by motion (m, rad) of `surge=5` and the like (m, deg)."""
-    offsets = by_motion(given, option, "its offset expected, as surge=5")
+    offsets = by_motion(texts, option, "its offset expected, as surge=5")
     for name, value in offsets.items():
         if name in ("roll", "pitch") and abs(value) >= 90:
             raise wrong(option, f"less than 90 deg expected, found {name}={value:g}")
@@ -104,52 +104,63 @@ RESULTS = {  # file of results: how folders with it are called, and what it is o
 }
 
 
-def new_folder(source: str | Path, mine: str) -> Path:
+def new_folder(source: str | Path, result_file: str) -> Path:
     """Folder in the working folder for a command without `--out`.
 
     It is called after what is computed, such as my-campaign-calibration. If there are such results already, it gets a number:
     nothing is overwritten. A job that was stopped has no results yet, and goes on in its folder.
 
     Args:
-        source: What is computed: a campaign's folder or file, a platform, a sweep file.
-        mine: File of results that the command writes last.
+        source: Input of the command: a campaign's folder or file, a platform, a sweep file.
+        result_file: File of results that the command writes last.
     """
     path = Path(source)
     named = path.parent if path.name in ("campaign.yaml", "platform.yaml") else path
-    name = f"{named.resolve().name.removesuffix('.yaml')}-{RESULTS[mine][0]}"
-    numbers = (name if i == 1 else f"{name}-{i}" for i in itertools.count(1))
-    return next(Path(one) for one in numbers if not (Path(one) / mine).exists())
+    name = f"{named.resolve().name.removesuffix('.yaml')}-{RESULTS[result_file][0]}"
+    candidates = (name if i == 1 else f"{name}-{i}" for i in itertools.count(1))
+    return next(Path(candidate) for candidate in candidates if not (Path(candidate) / result_file).exists())
 
 
-def results_folder(out: Path | None, mine: str, source: str | Path) -> Path:
-    """A folder that can be written, and has no results of another command: some are called alike, and would be lost.
+def results_folder(out: Path | None, result_file: str, source: str | Path) -> Path:
+    """Folder that can be written and has no results of another command.
+
+    Some files of different commands have the same name: those of the other command would be lost.
 
     Args:
         out: The folder; None: a new one.
-        mine: File of results that the command writes.
-        source: What is computed.
+        result_file: File of results that the command writes.
+        source: Input of the command.
+
+    Raises:
+        InputError: The folder cannot be written, or has results of another command.
     """
-    out = check_folder(new_folder(source, mine) if out is None else out)
-    for name, (_, of) in RESULTS.items():
+    out = check_folder(new_folder(source, result_file) if out is None else out)
+    for name, (_, computation) in RESULTS.items():
         # a motion.csv may be anybody's
         ours = (out / name).exists() and (name != "motion.csv" or (out / "simulated.nc").exists())
-        if name != mine and ours:
-            raise InputError("--out", [Problem("", "another folder", f"{str(out)!r}, which has the results of {of}")])
+        if name != result_file and ours:
+            raise InputError("--out", [Problem("", "another folder", f"{str(out)!r}, which has the results of {computation}")])
     return out
 
 
 def platforms_like(incomplete: str) -> list[str]:
-    """Built-in platforms that begin so, for the shell to complete; where there is none, it completes names of files."""
+    """Built-in platforms whose names begin so, for the shell to complete.
+
+    Where there is none, the shell completes names of files.
+    """
     return [name for name in builtin_platforms() if name.startswith(incomplete)]
 
 
 def check_platform(name: str) -> None:
-    """Raise InputError where a platform's argument is no built-in name and no file. What is in a file is not checked."""
-    known = builtin_platforms()
-    if name.lower() in known or is_there(Path(name)) or Path(name).suffix in YAML:
+    """Raise InputError where a platform's argument is neither a built-in name nor a file.
+
+    The contents of a file are not checked.
+    """
+    builtin = builtin_platforms()
+    if name.lower() in builtin or is_there(Path(name)) or Path(name).suffix in YAML:
         return
-    expected = f"a platform file, a built-in platform ({', '.join(known)}), or a campaign's folder"
-    raise InputError(name, [Problem("", expected, "no such file or folder", suggest(name, known) or suggest_path(name))])
+    expected = f"a platform file, a built-in platform ({', '.join(builtin)}), or a campaign's folder"
+    raise InputError(name, [Problem("", expected, "no such file or folder", suggest(name, builtin) or suggest_path(name))])
 
 
 def check_results(folder: Path) -> None:

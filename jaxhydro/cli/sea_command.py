@@ -31,18 +31,21 @@ MIN_NATURAL_PERIODS = 10  # that statistics of a motion are over
 def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     """Simulate, write and print; False where the motion grows beyond all bounds.
 
-    Raises InputError for a sea that cannot be, BadParameter for a transient, EquilibriumError where the platform does not rest.
+    Raises:
+        InputError: The sea cannot be.
+        BadParameter: The band or the transient is wrong.
+        EquilibriumError: The platform does not rest.
     """
     pace = float(model.pace)
     asked = with_band(asked, pace)
     begin = 0.0 if asked.record is None else float(asked.record.times[0])
     times = begin + job.times
     transient = transient_of(asked, job.duration, pace)
-    kept = times >= begin + transient
-    if kept.sum() < MIN_SAMPLES:
+    after_transient = times >= begin + transient
+    if after_transient.sum() < MIN_SAMPLES:
         enough = duration_of((MIN_SAMPLES + 1) * job.dt, asked.transient, pace)
         expected = f"{enough:g} s or more, for {MIN_SAMPLES} samples after the transient of {transient:g} s"
-        raise InputError("--duration", [Problem("", expected, f"{kept.sum()} of them {job.dt:g} s apart")])
+        raise InputError("--duration", [Problem("", expected, f"{after_transient.sum()} of them {job.dt:g} s apart")])
     say("Building the sea ...", stderr=True)
     sea, about, target, notes = build_sea(model, asked, job.duration)
     limits = _limits(model, about, job.duration, asked.order, asked.systems)
@@ -70,12 +73,14 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     motion = Motion.of(times, position, sea.gauge(times))
     first_order = motion.wave if asked.order == 1 else sea.gauge(times, order=1)
     channels = in_order(motion.values, np.asarray(motion.wave))
-    results = summary(times[kept], {name: values[kept] for name, values in channels.items()}, about["peak_period"])
+    results = summary(
+        times[after_transient], {name: values[after_transient] for name, values in channels.items()}, about["peak_period"]
+    )
     state = SeaState(np.asarray(first_order), target, about, results)
     source = f"jaxhydro {jaxhydro.__version__}"
     write_motion(motion, job.out, job.platform, source, state, job.figures, model.hull, job.inputs, job.formats)
     of_statistics, of_bands = tables(results)
-    span = f"from {times[kept][0]:g} to {times[-1]:g} s"
+    span = f"from {times[after_transient][0]:g} to {times[-1]:g} s"
     table(f"Statistics, {span}", *of_statistics)
     table("Energy by band", *of_bands)
     height = 4 * results["statistics"]["wave"]["standard_deviation"]
@@ -84,26 +89,29 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     return True
 
 
-def duration_of(kept: float, transient: float | None, pace: float) -> float:
-    """Shortest duration (s) that keeps so much after its transient, rounded up to two digits.
+def duration_of(window: float, transient: float | None, pace: float) -> float:
+    """Shortest duration (s) that leaves a window after its transient, rounded up to two digits.
 
     Args:
-        kept: What statistics are over (s).
+        window: Time that statistics are over (s).
         transient: As it was asked for (s); None: the usual one, which depends on the duration.
         pace: Pace of the platform.
     """
     if transient is not None:
-        return rounded_up(kept + transient)
-    return rounded_up(min(kept / (1 - TRANSIENT_SHARE), kept + TRANSIENT * pace))
+        return rounded_up(window + transient)
+    return rounded_up(min(window / (1 - TRANSIENT_SHARE), window + TRANSIENT * pace))
 
 
-def _start_up(modes: Modes, kept: float, transient: float | None, pace: float) -> list[Remark]:
-    """Warning where statistics are over few natural periods, so that the motion of the start is still in them."""
-    if not modes.period.size or kept >= MIN_NATURAL_PERIODS * modes.period[0]:
+def _start_up(modes: Modes, window: float, transient: float | None, pace: float) -> list[Remark]:
+    """Warning where statistics are over few natural periods.
+
+    The motion of the start is then still in them.
+    """
+    if not modes.period.size or window >= MIN_NATURAL_PERIODS * modes.period[0]:
         return []
-    said = f"statistics over {kept:.4g} s are {kept / modes.period[0]:.2g} natural periods of {modes.motion[0]}"
+    sentence = f"statistics over {window:.4g} s are {window / modes.period[0]:.2g} natural periods of {modes.motion[0]}"
     longer = duration_of(MIN_NATURAL_PERIODS * float(modes.period[0]), transient, pace)
-    return [Remark(f"{said}: the start and chance are in its numbers. Take --duration {longer:g} or more", warning=True)]
+    return [Remark(f"{sentence}: the start and chance are in its numbers. Take --duration {longer:g} or more", warning=True)]
 
 
 def _limits(model: Model, about: dict[str, Any], duration: float, order: int, systems: Sequence[WaveSystem]) -> list[Remark]:
@@ -111,12 +119,12 @@ def _limits(model: Model, about: dict[str, Any], duration: float, order: int, sy
     height, period = about["significant_wave_height"], about["peak_period"]
     if period is None:
         return []
-    found = sea_limits(float(height), float(period), model.environment, order, duration / float(period))
-    for one in systems if len(systems) > 1 else ():  # a low swell may be too long where the higher system is not
-        remark = shallow_water(one.hs, one.tp, model.environment, order, duration / one.tp)
-        if remark is not None and one.tp != period:
-            found.append(remark._replace(text=f"of the system of Tp {one.tp:g} s {remark.text}"))
-    return found
+    remarks = sea_limits(float(height), float(period), model.environment, order, duration / float(period))
+    for system in systems if len(systems) > 1 else ():  # a low swell may be too long where the higher system is not
+        remark = shallow_water(system.hs, system.tp, model.environment, order, duration / system.tp)
+        if remark is not None and system.tp != period:
+            remarks.append(remark._replace(text=f"of the system of Tp {system.tp:g} s {remark.text}"))
+    return remarks
 
 
 UNITS = {

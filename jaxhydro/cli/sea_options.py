@@ -30,7 +30,11 @@ TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
 
 def with_band(sea: RequestedSea, pace: float) -> RequestedSea:
-    """A sea with a band, for a platform of a `pace` (`jaxhydro.scales`). Raises BadParameter where it is none."""
+    """Sea with its band of frequencies filled in, for a platform of a `pace` (`jaxhydro.scales`).
+
+    Raises:
+        BadParameter: The cut-off is not above the lowest frequency.
+    """
     low, cutoff = sea.band(pace)
     if cutoff <= low:
         raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
@@ -38,7 +42,11 @@ def with_band(sea: RequestedSea, pace: float) -> RequestedSea:
 
 
 def transient_of(sea: RequestedSea, duration: float, pace: float = 1.0) -> float:
-    """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""
+    """Time (s) after the beginning from which on statistics are taken.
+
+    Raises:
+        BadParameter: Nothing of the duration is left.
+    """
     if sea.transient is None:
         return usual_transient(duration, pace)
     if not 0 <= sea.transient < duration:
@@ -47,9 +55,9 @@ def transient_of(sea: RequestedSea, duration: float, pace: float = 1.0) -> float
     return sea.transient
 
 
-def by_option(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Parameters of the command by the names of their options, those only that are given."""
-    return {f"--{name.replace('_', '-')}": value for name, value in given.items() if value not in (None, (), [])}
+def by_option(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters of the command that are given, by the names of their options."""
+    return {f"--{name.replace('_', '-')}": value for name, value in parameters.items() if value not in (None, (), [])}
 
 
 def is_campaign(name: str) -> bool:
@@ -57,53 +65,66 @@ def is_campaign(name: str) -> bool:
     return Path(name).is_dir() or Path(name).name == "campaign.yaml" or name in embedded_campaigns()
 
 
-def of_campaign(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Order, stretching, diffraction and cut-off (Hz) of a campaign's seas, those that are asked for. Raises BadParameter for
-    what does not go with one."""
+def of_campaign(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Order, stretching, diffraction and cut-off (Hz) of a campaign's seas, where they are asked for.
+
+    Raises:
+        BadParameter: An option does not go with a campaign.
+    """
     unused = [name for name in OF_SEA + OF_RECORD + NOT_OF_CAMPAIGNS if name not in ("--order", "--cutoff")]
-    for name in given:
-        if name in unused or given[name] != DEFAULTS.get(name, given[name]):
+    for name in options:
+        if name in unused or options[name] != DEFAULTS.get(name, options[name]):
             raise wrong(name, "it goes with a platform, not with a campaign, whose files say it: name its platform file")
-    order_of_sea(given)
-    if "--cutoff" in given:
-        positive(given["--cutoff"], "--cutoff")
-    how = {name: given.get(f"--{name}") for name in ("order", "stretching", "diffraction", "cutoff")}
+    order_of_sea(options)
+    if "--cutoff" in options:
+        positive(options["--cutoff"], "--cutoff")
+    how = {name: options.get(f"--{name}") for name in ("order", "stretching", "diffraction", "cutoff")}
     return {name: value if isinstance(value, int | float) else str(value) for name, value in how.items() if value is not None}
 
 
-def order_of_sea(given: Mapping[str, Any]) -> None:
+def order_of_sea(options: Mapping[str, Any]) -> None:
     """Raise BadParameter for an order of irregular waves above 2."""
-    if given.get("--order", 1) > ORDER:
-        raise wrong("--order", f"1 or 2 expected in irregular waves, found {given['--order']}: more is of regular waves")
+    if options.get("--order", 1) > ORDER:
+        raise wrong("--order", f"1 or 2 expected in irregular waves, found {options['--order']}: more is of regular waves")
 
 
-def stretching(given: Mapping[str, Any]) -> Any:
+def stretching(options: Mapping[str, Any]) -> Any:
     """The stretching asked for."""
-    return str(given.get("--stretching", "vertical"))
+    return str(options.get("--stretching", "vertical"))
 
 
-def asked(given: Mapping[str, Any], heading: float) -> RequestedSea | None:
-    """The irregular sea of the options given, the record yet to be read; None without one. Raises BadParameter."""
-    named = {name: given[name] for name in OF_SEA if name in given}
-    own = any(name in given for name in ("--sea", "--sea-file"))
-    record, of_spectrum = "--wave" in given, [name for name in named if name in OF_SPECTRUM]
-    if record and not own and (turned := [name for name in OF_DIRECTIONS if name in given]):
+def asked(options: Mapping[str, Any], heading: float) -> RequestedSea | None:
+    """Irregular sea of the options; None without one.
+
+    The record of `--wave` is not in it yet: see `with_record`.
+
+    Args:
+        options: Options that are given, by name.
+        heading: Direction that the waves travel to (deg).
+
+    Raises:
+        BadParameter: An option is wrong or missing, or does not go with another.
+    """
+    named = {name: options[name] for name in OF_SEA if name in options}
+    complete_sea = any(name in options for name in ("--sea", "--sea-file"))
+    record, of_spectrum = "--wave" in options, [name for name in named if name in OF_SPECTRUM]
+    if record and not complete_sea and (turned := [name for name in OF_DIRECTIONS if name in options]):
         raise wrong(turned[0], "--wave takes the sea from a record of one gauge, which does not tell directions: not both")
-    if record and of_spectrum and not own:
+    if record and of_spectrum and not complete_sea:
         raise wrong(of_spectrum[0], "--wave takes the sea from a record: not both")
-    if not record and (of_gauge := [name for name in OF_RECORD if name in given]):
+    if not record and (of_gauge := [name for name in OF_RECORD if name in options]):
         raise wrong(of_gauge[0], "a record expected with it, --wave FILE")
-    if not record and not own and "--hs" not in named:
-        if "--wave-height" in given and set(named) == {"--order"}:
+    if not record and not complete_sea and "--hs" not in named:
+        if "--wave-height" in options and set(named) == {"--order"}:
             return None
         if named:
-            what = "a significant wave height expected with it" if of_spectrum else "a sea expected with it"
-            raise wrong(next(iter(named)), f"{what}: --hs 3.1 --tp 8.96" + ("" if of_spectrum else ", or --wave FILE"))
+            expected = "a significant wave height expected with it" if of_spectrum else "a sea expected with it"
+            raise wrong(next(iter(named)), f"{expected}: --hs 3.1 --tp 8.96" + ("" if of_spectrum else ", or --wave FILE"))
         return None
-    order_of_sea(given)
+    order_of_sea(options)
     kind = str(named.get("--spectrum", "jonswap"))
     hs, tp, gamma = (named.get(name) for name in ("--hs", "--tp", "--gamma"))
-    if not record and not own:
+    if not record and not complete_sea:
         positive(named["--hs"], "--hs")
         _spectrum(kind, tp, gamma)
     low, cutoff = (finite(named[name], name) if name in named else None for name in ("--low", "--cutoff"))
@@ -113,25 +134,25 @@ def asked(given: Mapping[str, Any], heading: float) -> RequestedSea | None:
         raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
     seed, amplitudes = named.get("--seed", SEED), str(named.get("--amplitudes", "deterministic"))
     how: dict[str, Any] = {"seed": seed, "amplitudes": amplitudes, "low": low, "cutoff": cutoff}
-    how |= {"stretching": stretching(given), "transient": named.get("--transient")}
-    if any(name in given for name in OF_DIRECTIONS):
+    how |= {"stretching": stretching(options), "transient": named.get("--transient")}
+    if any(name in options for name in OF_DIRECTIONS):
         from jaxhydro.cli import directional_options
 
-        return directional_options.asked(given, heading, how)
+        return directional_options.asked(options, heading, how)
     return RequestedSea(hs, tp, gamma, kind, order=named.get("--order", ORDER), heading=heading, **how)
 
 
-def duration(given: float | None, sea: RequestedSea | None) -> float:
-    """Duration (s) given or chosen. Raises BadParameter for one that is longer than the record."""
+def duration(requested: float | None, sea: RequestedSea | None) -> float:
+    """Duration (s), requested or chosen. Raises BadParameter for one that is longer than the record."""
     record = None if sea is None else sea.record
     if record is None:
-        if given is not None and positive(given, "--duration") > MAX_DURATION:
-            raise wrong("--duration", f"at most {MAX_DURATION:g} s expected, found {given:g}")
-        return given if given is not None else 600.0 if sea is None else 3600.0
+        if requested is not None and positive(requested, "--duration") > MAX_DURATION:
+            raise wrong("--duration", f"at most {MAX_DURATION:g} s expected, found {requested:g}")
+        return requested if requested is not None else 600.0 if sea is None else 3600.0
     whole = float(record.times[-1] - record.times[0])
-    if given is not None and positive(given, "--duration") > whole * (1 + 1e-9):
-        raise wrong("--duration", f"at most the record's length, {whole:g} s, expected, found {given:g}")
-    return whole if given is None else given
+    if requested is not None and positive(requested, "--duration") > whole * (1 + 1e-9):
+        raise wrong("--duration", f"at most the record's length, {whole:g} s, expected, found {requested:g}")
+    return whole if requested is None else requested
 
 
 def _spectrum(kind: str, tp: float | None, gamma: float | None) -> None:
@@ -147,17 +168,19 @@ def _spectrum(kind: str, tp: float | None, gamma: float | None) -> None:
         raise wrong("--gamma", f"from 1 to 7 expected, found {gamma:g}")
 
 
-def with_record(sea: RequestedSea, file: Path, table: Any, given: Mapping[str, Any]) -> RequestedSea:
+def with_record(sea: RequestedSea, file: Path, table: Any, options: Mapping[str, Any]) -> RequestedSea:
     """The sea with the record in a file's table (pandas).
 
-    Raises InputError for columns that are not there, gaps and uneven sampling; BadParameter for the gauge's place.
+    Raises:
+        InputError: A column is missing, has gaps, uneven times or another unit, or the waves are too steep.
+        BadParameter: The unit or the gauge's position is wrong.
     """
 
     def wrong_file(where: str, expected: str, found: str, hint: str = "") -> InputError:
         return InputError(str(file), [Problem(where, expected, found, hint)])
 
     def pick(option: str, default: str) -> tuple[str, np.ndarray]:
-        names, name = [str(column) for column in table.columns], str(given.get(option, default))
+        names, name = [str(column) for column in table.columns], str(options.get(option, default))
         if name not in names and name.isdigit() and int(name) < len(names):
             name = names[int(name)]
         if name not in names:
@@ -178,7 +201,7 @@ def with_record(sea: RequestedSea, file: Path, table: Any, given: Mapping[str, A
         hint = "Interpolate to even times, or make it a campaign, which takes such records."
         raise wrong_file(f"column {time_name}", "even sampling", f"none ({error})", hint) from None
     stated = table.attrs.get("stated", {})
-    unit = str(given.get("--wave-unit", "m"))
+    unit = str(options.get("--wave-unit", "m"))
     if unit not in UNITS:
         raise wrong("--wave-unit", f"one of {', '.join(UNITS)} expected, found {unit}")
     if name in stated and stated[name] != unit:
@@ -194,5 +217,5 @@ def with_record(sea: RequestedSea, file: Path, table: Any, given: Mapping[str, A
         found = f"waves {height:.3g} m high and {length:.3g} m long"
         expected = "waves less than 1/7 as high as long, at full scale"
         raise wrong_file(f"column {name}", expected, found, "--wave-unit: mm or cm?")
-    x, y = (finite(float(value), "--wave-position") for value in given.get("--wave-position", (0.0, 0.0)))
+    x, y = (finite(float(value), "--wave-position") for value in options.get("--wave-position", (0.0, 0.0)))
     return replace(sea, record=Record(str(file), name, times, elevation, (x, y)))

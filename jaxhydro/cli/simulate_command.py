@@ -37,9 +37,19 @@ BED_TOLERANCE = 1e-6  # of the depth: what is below the bed by less touches it
 
 
 class Job(NamedTuple):
-    """What every simulation is told: the platform's name, where results go, duration and sampling (s), offset from rest (m,
-    rad), largest step (s; None: chosen), whether figures are drawn, the file of the calibration, and further formats of the
-    motion."""
+    """Inputs that every simulation has.
+
+    Attributes:
+        platform: Name of the platform.
+        out: Folder of the results.
+        duration: Simulated time (s).
+        dt: Time between samples (s).
+        offset: Offset from rest at the start by motion (m, rad).
+        step: Largest step (s); None: chosen.
+        figures: Whether figures are drawn.
+        calibration: File of the calibration.
+        formats: Further formats of the motion.
+    """
 
     platform: str
     out: Path
@@ -53,26 +63,37 @@ class Job(NamedTuple):
 
     @property
     def inputs(self) -> dict[str, float | str | None]:
-        """What was asked for, as the attributes of simulated.nc: releases (m, deg), calibration."""
+        """Attributes of simulated.nc: releases (m, deg) and calibration."""
         released = {f"release_{dof}": float(for_people(dof, value)) for dof, value in self.offset.items()}
         return {**released, "calibration": self.calibration}
 
     @property
     def times(self) -> np.ndarray:
-        """Of the samples that are written, from 0 (s)."""
+        """Times of the samples that are written, from 0 (s)."""
         return self.dt * np.arange(math.floor(self.duration / self.dt * (1 + 1e-12)) + 1)
 
 
 def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
-    """The model with the values, laws and effects of a calibration.json or diagnosis.json; what is to be known of them is
-    printed. `asked` is the platform as it was asked for, `name` its own. Raises InputError."""
+    """Model with the values, laws and effects of a calibration.json or diagnosis.json.
+
+    Remarks on them are printed.
+
+    Args:
+        model: The model.
+        asked: The platform as it was asked for.
+        name: The platform's own name.
+        source: The calibration's file or folder.
+
+    Raises:
+        InputError: The calibration cannot be used.
+    """
     model, used = with_calibration(model, asked, name, source)
     print_used(used)
     return model
 
 
 def print_used(used: UsedCalibration) -> None:
-    """Labels of calibrated values that are used, and what is to be known of them."""
+    """Print the labels of the calibrated values that are used, and remarks on them."""
     counted = ""
     if used.reference is not None:
         hs, tp = used.reference
@@ -87,7 +108,7 @@ def print_used(used: UsedCalibration) -> None:
 
 
 def finite(times: np.ndarray, position: np.ndarray) -> bool:
-    """Whether a motion is all numbers; where it is not, says from when on."""
+    """Whether a motion is finite; if it is not, print the time from which on."""
     if np.isfinite(position).all():
         return True
     first = times[np.argmin(np.isfinite(position).all(axis=1))]
@@ -96,7 +117,10 @@ def finite(times: np.ndarray, position: np.ndarray) -> bool:
 
 
 def told_of_bed(model: Model, times: np.ndarray, position: np.ndarray) -> None:
-    """Print a warning where a motion takes the hull through the sea bed, which does not hold it and where there is no water."""
+    """Print a warning where a motion takes the hull through the sea bed.
+
+    The bed does not hold the hull, and there is no water below it.
+    """
     points = jnp.asarray(model.hull.extremities())
     if not points.size:
         return
@@ -121,9 +145,19 @@ def run(
     stretching: Stretching = "vertical",
     order: int = 1,
 ) -> bool:
-    """Simulate, write and print; False where the motion grows beyond all bounds. `heading` in deg, `order` of `regular_wave`.
+    """Simulate, write and print; False where the motion grows beyond all bounds.
 
-    Raises InputError for a wave that cannot be, EquilibriumError where the platform does not rest.
+    Args:
+        model: The model.
+        job: Inputs of the simulation.
+        wave: Height (m) and period (s) of regular waves; None: a free decay.
+        heading: Direction that the waves travel to (deg).
+        stretching: Flow above still water.
+        order: Order of `regular_wave`.
+
+    Raises:
+        InputError: The wave cannot be.
+        EquilibriumError: The platform does not rest.
     """
     sea, ramp, step = None, 0.0, job.step
     print_remarks(model.remarks)
@@ -144,8 +178,8 @@ def run(
     told_of_bed(model, times, position)
     elevation = None
     if sea is not None:
-        here = jnp.zeros((2, 1))
-        elevation = np.asarray(jax.vmap(lambda time: sea.elevation(time, here)[0])(jnp.asarray(times)))
+        origin = jnp.zeros((2, 1))
+        elevation = np.asarray(jax.vmap(lambda time: sea.elevation(time, origin)[0])(jnp.asarray(times)))
     motion = Motion.of(times, position, elevation)
     inputs = job.inputs
     if wave is not None:
@@ -174,14 +208,14 @@ def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, s
 
 
 def print_remarks(remarks: Iterable[Remark]) -> None:
-    """Print what is to be known of what was read, warnings first."""
+    """Print remarks on what was read, warnings first."""
     remarks = list(remarks)
-    for one in remarks:
-        if one.warning:
-            complain(f"warning: {one.text}")
-    for one in remarks:
-        if not one.warning:
-            say(f"Note: {one.text}")
+    for remark in remarks:
+        if remark.warning:
+            complain(f"warning: {remark.text}")
+    for remark in remarks:
+        if not remark.warning:
+            say(f"Note: {remark.text}")
 
 
 def print_position(title: str, position: np.ndarray) -> None:

@@ -1,4 +1,7 @@
-"""Output files of a simulation: simulated.nc, motion.csv, motion.nc, motion.outb and figures, in m and deg."""
+"""Output files of a simulation, in m and deg.
+
+They are simulated.nc, motion.csv, motion.nc, motion.outb, statistics.json and figures.
+"""
 
 import json
 from collections.abc import Callable, Collection, Iterable, Mapping
@@ -28,7 +31,13 @@ MAX_PLOTTED_FREQUENCY = 0.2  # Hz, that spectra are drawn to
 
 
 class Motion(NamedTuple):
-    """A simulated motion as people read it: time (s), surge ... yaw (m, deg; sample, dof), elevation (m) or None."""
+    """Simulated motion in the units that people read.
+
+    Attributes:
+        time: Times (s), (t,).
+        values: Surge ... yaw (m, deg), (t, 6).
+        wave: Elevation (m), (t,), or None.
+    """
 
     time: np.ndarray
     values: np.ndarray
@@ -52,8 +61,14 @@ class Motion(NamedTuple):
 
 
 class SeaState(NamedTuple):
-    """What is written about an irregular sea: its first order (m), the spectrum asked for (Hz -> m2/Hz; None: a record), how it
-    was made, and `summary`'s results."""
+    """Irregular sea, as it is written.
+
+    Attributes:
+        first_order: First order of the elevation (m), (t,).
+        target: Spectrum that was asked for (Hz -> m²/Hz); None for a record.
+        about: Properties of the sea: how it was made.
+        results: Results of `summary`.
+    """
 
     first_order: np.ndarray
     target: Callable[[np.ndarray], np.ndarray] | None
@@ -72,7 +87,9 @@ def write_motion(
     inputs: Mapping[str, Any] | None = None,
     formats: Collection[str] = (),
 ) -> None:
-    """Write a motion's files into a folder; without `figures` those of an earlier simulation there are taken away.
+    """Write a motion's files into a folder.
+
+    Without `figures`, those of an earlier simulation there are taken away.
 
     Args:
         motion: The motion.
@@ -82,7 +99,7 @@ def write_motion(
         sea: The irregular sea, if there is one.
         figures: Whether figures are drawn.
         hull: Hull of the model, written for drawings.
-        inputs: What was asked for beside the sea, written as attributes; None is left out.
+        inputs: Inputs beside the sea, written as attributes; None is left out.
         formats: Further files of the motion: of `FORMAT_FILES`.
     """
     names = ["time_s", *(f"{dof}_{unit_of(dof)}" for dof in DOFS)]
@@ -160,19 +177,19 @@ def _statistics(sea: SeaState, folder: Path, title: str, source: str) -> None:
 def _sea_figures(motion: Motion, wave: np.ndarray, sea: SeaState, folder: Path, title: str) -> None:
     time, channels, start = motion.time, in_order(motion.values, wave), sea.results["window"][0]
     second = sea.first_order if sea.about["order"] == 2 else None
-    kept = {name: values[time >= start] for name, values in channels.items()}
+    windowed = {name: values[time >= start] for name, values in channels.items()}
     height, peak = sea.about["significant_wave_height"], sea.about["peak_period"]
     title += f"\nHs {height:.3g} m" + (f", Tp {peak:.3g} s" if peak else ", white")
     for name, figure in (
         ("motion", sea_plot.record_figure(time, channels, start, title)),
         ("window", sea_plot.window_figure(time, channels, second, start, title)),
-        ("spectra", sea_plot.spectra_figure(time[time >= start], kept, peak, MAX_PLOTTED_FREQUENCY, sea.target, title)),
+        ("spectra", sea_plot.spectra_figure(time[time >= start], windowed, peak, MAX_PLOTTED_FREQUENCY, sea.target, title)),
     ):
         save(figure, folder / "figures" / f"{name}.png")
 
 
 def _stale(folder: Path, temporary: Path) -> Iterable[str]:
-    """What an earlier simulation wrote and the new one does not, and the report of it."""
+    """Files of an earlier simulation that the new one does not write, and the report of it."""
     if (folder / "motion.csv").is_file():
         yield from (
             name for name in (*OF_SEAS, *FORMAT_FILES.values()) if (folder / name).is_file() and not (temporary / name).exists()

@@ -28,7 +28,9 @@ OF_TENSIONS = PREFIXES[1:]  # as moorings are described
 
 
 def print_statics(platform: str, force: Mapping[str, float], offset: Mapping[str, float], calibration: Path | None) -> None:
-    """Print rest position, periods, forces by load, mooring lines and stiffness; offset curves; a steady force's offset.
+    """Print rest position, natural periods, forces by load, mooring lines and stiffness.
+
+    Offset curves follow where they are asked for, and the position under a steady force.
 
     Args:
         platform: A platform file, or a built-in name.
@@ -40,10 +42,10 @@ def print_statics(platform: str, force: Mapping[str, float], offset: Mapping[str
         InputError: The platform or the calibration cannot be used.
         EquilibriumError: The platform does not rest, with the force or without.
     """
-    declared = load_platform(platform)
-    model = build(declared)
+    contents = load_platform(platform)
+    model = build(contents)
     if calibration is not None:
-        model = calibrated(model, platform, declared.name, calibration)
+        model = calibrated(model, platform, contents.name, calibration)
     print_remarks(model.remarks)
     print_rest(model, platform)
     rest = equilibrium(model)
@@ -65,7 +67,10 @@ def _force_unit(dof: str) -> str:
 
 
 def _prefix(values: Iterable[float], prefixes: Sequence[tuple[float, str]] = PREFIXES) -> tuple[float, str]:
-    """Size and letter of the prefix of N with which the largest of some values is 1 or more, where there is one."""
+    """Size and letter of the prefix of N that makes the largest of some values 1 or more.
+
+    Where no prefix does, it is the last one.
+    """
     largest = max((abs(x) for x in values if math.isfinite(x)), default=0.0)
     return next(((size, letter) for size, letter in prefixes if largest >= size), prefixes[-1])
 
@@ -126,9 +131,9 @@ def _print_curve(model: Model, dof: str, rest: float, most: float) -> None:
     curve = offset_curve(model, dof, jnp.asarray(offsets))
     size, letter = _prefix(map(float, curve.force))
     heads = [f"{dof} ({unit_of(dof)})", f"Force ({letter}{_force_unit(dof)})"]
-    others = [other for other in ("surge", "sway", "heave", "roll", "pitch") if other != dof]
-    heads += [f"{other} ({unit_of(other)})" for other in others]
-    tensions: list[list[LineState]] = [line_states(model, jnp.asarray(one)) for one in curve.position]
+    others = [other_dof for other_dof in ("surge", "sway", "heave", "roll", "pitch") if other_dof != dof]
+    heads += [f"{other_dof} ({unit_of(other_dof)})" for other_dof in others]
+    tensions: list[list[LineState]] = [line_states(model, jnp.asarray(held_position)) for held_position in curve.position]
     line_size, line_letter = _prefix((line.tension for lines in tensions for line in lines), OF_TENSIONS)
     heads += [f"Line {i + 1} ({line_letter}N)" for i in range(len(tensions[0]))]
     rows = []
@@ -136,7 +141,7 @@ def _print_curve(model: Model, dof: str, rest: float, most: float) -> None:
     for position, force, lines in zip(curve.position.round(8) + 0.0, curve.force, tensions):
         motion = dict(zip(DOFS, position, strict=True))
         cells = [f"{float(for_people(dof, motion[dof])):.4g}", "0" if abs(force) < least else f"{force / size:.5g}"]
-        cells += [f"{float(for_people(other, motion[other]).round(3)) + 0.0:.3f}" for other in others]
+        cells += [f"{float(for_people(other_dof, motion[other_dof]).round(3)) + 0.0:.3f}" for other_dof in others]
         rows.append((*cells, *(f"{line.tension / line_size:.5g}" for line in lines)))
     table(f"Held in {dof}: the force that it takes{', and the tensions' if tensions[0] else ''}", heads, rows)
     if not np.isfinite(curve.force).all():

@@ -36,7 +36,10 @@ def sweep(
 ) -> bool:
     """Run a sweep or what is left of it, write and print; False where runs failed.
 
-    Raises InputError for bad input, EquilibriumError where the platform does not rest, Stopped.
+    Raises:
+        InputError: The input is wrong.
+        EquilibriumError: The platform does not rest.
+        Stopped: It was stopped.
     """
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # GPU memory is for the workers
     if scheduler is not None and workers is not None:
@@ -44,10 +47,10 @@ def sweep(
     try:
         made = prepared(load_sweep(source), str(source))
         # bad input is told before anything is begun
-        workers_there = 0 if scheduler is None else workers_of(scheduler)
+        available_workers = 0 if scheduler is None else workers_of(scheduler)
         stop_if_asked()
         with locked_folder(out):
-            return _sweep(made, out, workers, batch, restart, retry_failed, scheduler, workers_there)
+            return _sweep(made, out, workers, batch, restart, retry_failed, scheduler, available_workers)
     except (KeyboardInterrupt, Exception) as error:
         if not (asked_to_stop() or isinstance(error, KeyboardInterrupt)):
             raise
@@ -68,7 +71,7 @@ def _sweep(
     restart: bool,
     retry_failed: bool,
     scheduler: str | None,
-    workers_there: int,
+    available_workers: int,
 ) -> bool:
     print_remarks(made.remarks)
     resumed = opened(out, made, restart)
@@ -80,29 +83,29 @@ def _sweep(
     ran = SessionResult(0, 0, 0.0, 0.0)
     if numbers:
         how = chosen(made.setup, len(numbers), workers, batch)
-        say(how.words if scheduler is None else _cluster(scheduler, workers_there, how.batch), stderr=True)
+        say(how.words if scheduler is None else _cluster(scheduler, available_workers, how.batch), stderr=True)
         with counting(len(made.inputs.plan), len(made.inputs.plan) - len(numbers), "runs") as show:
             try:
                 ran = run_all(out, made, numbers, how, scheduler, partial(_show, show))
             except OSError as error:
-                said = str(error.strerror or error)
+                reason = str(error.strerror or error)
                 if scheduler is not None:  # workers write, and say it themselves where they cannot
-                    raise Stopped(f"the scheduler at {scheduler} was lost ({said}); {_kept(out)}") from None
-                raise InputError("--out", [Problem("", "a folder that can be written", f"{str(out)!r} ({said})")]) from None
+                    raise Stopped(f"the scheduler at {scheduler} was lost ({reason}); {_kept(out)}") from None
+                raise InputError("--out", [Problem("", "a folder that can be written", f"{str(out)!r} ({reason})")]) from None
         many = f"{ran.runs} run{'s' * (ran.runs != 1)}"
         say(f"{many} in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
     data = open_results(out)
-    found = results_of(data, made.about)
-    write_outputs(out, data, found)
+    results = results_of(data, made.about)
+    write_outputs(out, data, results)
     finished()
-    _print_results(found)
+    _print_results(results)
     say(f"Results are in {out}")
-    return not found.runs.failed
+    return not results.runs.failed
 
 
 def _cluster(scheduler: str, workers: int, batch: int) -> str:
-    there = f"{workers} worker{'s' * (workers != 1)}" if workers else "no worker yet, and nothing runs until there is one"
-    return f"On the cluster of {scheduler}: {there}; {batch} run{'s' * (batch != 1)} at a time each"
+    available = f"{workers} worker{'s' * (workers != 1)}" if workers else "no worker yet, and nothing runs until there is one"
+    return f"On the cluster of {scheduler}: {available}; {batch} run{'s' * (batch != 1)} at a time each"
 
 
 def _show(show: Callable[[int, str], None], now: Progress) -> None:
@@ -135,22 +138,28 @@ def _print_plan(made: PreparedSweep) -> None:
         print_used(made.setup.calibrated)
 
 
-def _print_results(found: SweepResults) -> None:
+def _print_results(results: SweepResults) -> None:
     rows = []
-    for channel, one in found.lifetime.items():
-        values = [one.mean, one.standard_deviation, one.standard_deviation_spread, one.minimum, one.maximum]
-        values += one.damage_equivalent_range.values()
+    for channel, statistics in results.lifetime.items():
+        values = [
+            statistics.mean,
+            statistics.standard_deviation,
+            statistics.standard_deviation_spread,
+            statistics.minimum,
+            statistics.maximum,
+        ]
+        values += statistics.damage_equivalent_range.values()
         shown = ("-" if value is None else f"{value:.4g}" if abs(value) > 1e-9 else "0" for value in values)
-        rows.append((f"{channel} ({one.unit})", *shown))
-    if found.runs.done:
+        rows.append((f"{channel} ({statistics.unit})", *shown))
+    if results.runs.done:
         heads = ("Channel", "Mean", "Standard deviation", "Spread over seeds", "Minimum", "Maximum")
-        exponents = next(iter(found.lifetime.values())).damage_equivalent_range
+        exponents = next(iter(results.lifetime.values())).damage_equivalent_range
         table("Over the life", (*heads, *(f"Equivalent range m = {m}" for m in exponents)), rows)
-    if found.runs.failed:
-        missing = found.probability_without_runs
+    if results.runs.failed:
+        missing = results.probability_without_runs
         share = f"; cases of which no run is left have {missing:.2%} of the life" if missing else ""
-        complain(f"{found.runs.failed} of {found.runs.total} runs failed{share}")
-        listed, others = found.failures[:MAX_PRINTED_FAILURES], found.failures[MAX_PRINTED_FAILURES:]
+        complain(f"{results.runs.failed} of {results.runs.total} runs failed{share}")
+        listed, others = results.failures[:MAX_PRINTED_FAILURES], results.failures[MAX_PRINTED_FAILURES:]
         for failure in listed:
             complain(f"{runs_in_words(State.of(failure), failure.headings, failure.seeds)}: {failure.reason}")
         if others:

@@ -51,10 +51,10 @@ def statistics_frame(response: "Response") -> pd.DataFrame:
     """Minimum, maximum, mean and standard deviation of each motion (m, deg)."""
     frame = response_frame(response)
     sizes = {"minimum": frame.min(), "maximum": frame.max(), "mean": frame.mean(), "standard deviation": frame.std(ddof=0)}
-    found = pd.DataFrame(sizes).round(6) + 0.0  # no -0
-    found.insert(0, "motion", list(DOFS))
-    found["unit"] = [unit_of(dof) for dof in DOFS]
-    return found
+    statistics = pd.DataFrame(sizes).round(6) + 0.0  # no -0
+    statistics.insert(0, "motion", list(DOFS))
+    statistics["unit"] = [unit_of(dof) for dof in DOFS]
+    return statistics
 
 
 def modes_frame(modes: "Modes") -> pd.DataFrame:

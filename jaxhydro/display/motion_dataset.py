@@ -26,7 +26,9 @@ DIRECTIONS = {
 
 
 def response_dataset(response: "Response") -> xr.Dataset:
-    """Position of the reference point over time, a variable for each motion, in m and degrees as in the package's files.
+    """Position of the reference point over time as an xarray data set, in m and degrees.
+
+    It has a variable for each motion. Units are those of the package's files.
 
     Args:
         response: The motion, (t, 6).

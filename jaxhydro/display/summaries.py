@@ -22,7 +22,10 @@ SMALLEST = 1e-6  # m or deg: what is smaller is shown as 0
 
 
 def are_numbers(tree: object) -> bool:
-    """Whether all leaves are numbers or arrays: not None, nor what stands for them while JAX traces or compares shapes."""
+    """Whether all leaves are numbers or arrays.
+
+    None does not count, nor do placeholders while JAX traces or compares shapes.
+    """
     leaves = jax.tree.leaves(tree, is_leaf=lambda x: x is None)
     return all(isinstance(x, int | float | np.ndarray | jax.Array) and not isinstance(x, jax.core.Tracer) for x in leaves)
 
@@ -37,21 +40,21 @@ def model_summary(model: "Model") -> str:
     groups = list(dict.fromkeys(group for group, _ in hull.elements.labels))
     mass, density, depth = (float(x) for x in (model.body.mass, water.density, water.depth))
     centre = ", ".join(f"{float(x):.3g}" for x in np.asarray(model.body.centre).round(6) + 0.0)
-    said = [f"Model of a floating platform: {mass / 1e3:.5g} t in water of {density:g} kg/m³, {depth:g} m deep"]
-    said.append(f"  centre of mass: ({centre}) m from the reference point")
+    lines = [f"Model of a floating platform: {mass / 1e3:.5g} t in water of {density:g} kg/m³, {depth:g} m deep"]
+    lines.append(f"  centre of mass: ({centre}) m from the reference point")
     strips = f"{hull.elements.length.size} load elements, {len(hull.strips.element)} strips"
-    said.append(f"  hull: {strips} in {', '.join(groups)}" if groups else "  hull: no members")
+    lines.append(f"  hull: {strips} in {', '.join(groups)}" if groups else "  hull: no members")
     for name, effects in (("loads", model.loads), ("water effects", model.water), ("sensor effects", model.sensors)):
         if effects:
-            said.append(f"  {name}: {', '.join(_effect(effect) for effect in effects)}")
+            lines.append(f"  {name}: {', '.join(_effect(effect) for effect in effects)}")
     default = Conventions()
     chosen = [(f.name, getattr(model.conventions, f.name)) for f in fields(Conventions)]
     if changed := [f"{name} {value}" for name, value in chosen if value != getattr(default, name)]:
-        said.append(f"  conventions: {', '.join(changed)}")
-    said.append(f"  {len(model.values)} parameters: `values`, and `about` for what each means")
+        lines.append(f"  conventions: {', '.join(changed)}")
+    lines.append(f"  {len(model.values)} parameters: `values`, and `about` for what each means")
     if model.remarks:
-        said.append(f"  {len(model.remarks)} remark{'' if len(model.remarks) == 1 else 's'} on its files (`remarks`)")
-    return "\n".join(said)
+        lines.append(f"  {len(model.remarks)} remark{'' if len(model.remarks) == 1 else 's'} on its files (`remarks`)")
+    return "\n".join(lines)
 
 
 def _effect(effect: "AbstractEffect") -> str:
@@ -103,9 +106,9 @@ def modes_summary(modes: "Modes") -> str:
         modes: The natural modes.
     """
     count = len(modes.period)
-    said = [f"Modes: {count} natural period{'' if count == 1 else 's'}"]
-    said += [f"  {motion:<5} {period:>8.2f} s" for motion, period in zip(modes.motion, modes.period, strict=True)]
-    return "\n".join([*said, *([f"  unstable in {', '.join(modes.unstable)}"] if modes.unstable else [])])
+    lines = [f"Modes: {count} natural period{'' if count == 1 else 's'}"]
+    lines += [f"  {motion:<5} {period:>8.2f} s" for motion, period in zip(modes.motion, modes.period, strict=True)]
+    return "\n".join([*lines, *([f"  unstable in {', '.join(modes.unstable)}"] if modes.unstable else [])])
 
 
 def components_summary(waves: "Components") -> str:

@@ -82,9 +82,9 @@ def open_capytaine(path: str | PathLike[str], needed: tuple[str, ...], body: str
         raise wrong("", "a NetCDF file of Capytaine", "no such file") from None
     except Exception as error:  # each of xarray's engines has its own
         raise wrong("", "a NetCDF file of Capytaine", shown(str(error))) from None
-    known = [str(name) for name in data.variables]
+    variables = [str(name) for name in data.variables]
     if missing := [name for name in needed if name not in data]:
-        raise wrong(missing[0], "this variable", ", ".join(known) or "none", suggest(missing[0], known))
+        raise wrong(missing[0], "this variable", ", ".join(variables) or "none", suggest(missing[0], variables))
     names = _bodies(data)
     if body is None and len(names) > 1:
         raise wrong("", "the name of a body in `body`", "none", f"The dataset has {', '.join(names)}.")
@@ -113,15 +113,15 @@ def _text(name: Any) -> str:
 
 def _bodies(data: Any) -> list[str]:
     """Names of the bodies of a dataset, in order."""
-    found: dict[str, None] = {}
+    bodies: dict[str, None] = {}
     for dim in PAIR:
         if dim in data.coords:
             prefixed = [_text(name).rpartition(BODY_SEPARATOR) for name in np.atleast_1d(data[dim].values)]
-            found |= {name: None for name, between, _ in prefixed if between}
+            bodies |= {name: None for name, between, _ in prefixed if between}
     for dim in BODY:
-        if not found and dim in data.coords:
-            found |= {_text(name): None for name in np.atleast_1d(data[dim].values)}
-    return list(found)
+        if not bodies and dim in data.coords:
+            bodies |= {_text(name): None for name in np.atleast_1d(data[dim].values)}
+    return list(bodies)
 
 
 def _reference(
@@ -143,8 +143,8 @@ def _reference(
     point = centre - np.append(origin, 0.0)
     if np.abs(point).max() > ORIGIN_TOLERANCE:
         shift = rigid_shift(point)
-        there = ", ".join(f"{one:g}" for one in centre)
-        notes.append(f"{source}: computed about ({there}) m: moved to the platform's reference point")
+        coordinates = ", ".join(f"{x:g}" for x in centre)
+        notes.append(f"{source}: computed about ({coordinates}) m: moved to the platform's reference point")
     return origin, shift
 
 
@@ -166,111 +166,113 @@ def read_capytaine(
     Raises:
         InputError: With the variable that is wrong, and frequencies at which only a part was computed.
     """
-    one = open_capytaine(path, ("added_mass", "radiation_damping"), body)
-    mass, damping = (_cube(one, name) for name in ("added_mass", "radiation_damping"))
-    omega = np.asarray(one.data["added_mass"].coords["omega"].values, float)
+    dataset = open_capytaine(path, ("added_mass", "radiation_damping"), body)
+    mass, damping = (_cube(dataset, name) for name in ("added_mass", "radiation_damping"))
+    omega = np.asarray(dataset.data["added_mass"].coords["omega"].values, float)
     order = np.argsort(omega)
     omega, mass, damping = omega[order], mass[order], damping[order]
     if np.isnan(omega).any() or (omega < 0).any() or (np.diff(omega) == 0).any():
-        raise one.wrong("omega", "frequencies from 0 up, each once", shown(omega.tolist()))
+        raise dataset.wrong("omega", "frequencies from 0 up, each once", shown(omega.tolist()))
     inner = (omega > 0) & np.isfinite(omega)
-    kept = computed(one, {"added_mass": (omega, mass), "radiation_damping": (omega[inner], damping[inner])})
-    inner &= np.isin(omega, kept)
+    solved = computed(dataset, {"added_mass": (omega, mass), "radiation_damping": (omega[inner], damping[inner])})
+    inner &= np.isin(omega, solved)
     if inner.sum() < MIN_FREQUENCIES:
-        raise one.wrong("omega", f"{MIN_FREQUENCIES} finite frequencies above 0 or more", f"{inner.sum()}")
-    scale = one.scale(density)
+        raise dataset.wrong("omega", f"{MIN_FREQUENCIES} finite frequencies above 0 or more", f"{inner.sum()}")
+    scale = dataset.scale(density)
 
     def about(matrix: np.ndarray) -> np.ndarray:
-        return scale * one.shift.T @ np.nan_to_num(matrix) @ one.shift
+        return scale * dataset.shift.T @ np.nan_to_num(matrix) @ dataset.shift
 
-    zero, infinite = ([about(m) for m, w in zip(mass, omega) if w == at and w in kept] for at in (0.0, np.inf))
-    limits = (found[0] if found else None for found in (infinite, zero))
+    zero, infinite = ([about(m) for m, w in zip(mass, omega) if w == frequency and w in solved] for frequency in (0.0, np.inf))
+    limits = (matrices[0] if matrices else None for matrices in (infinite, zero))
     if notes is not None:
-        notes += one.notes
+        notes += dataset.notes
     return RadiationCoefficients(omega[inner], about(mass[inner]), about(damping[inner]), *limits)
 
 
-def computed(one: Dataset, variables: dict[str, tuple[np.ndarray, np.ndarray]]) -> Float[np.ndarray, " n"]:
+def computed(dataset: Dataset, variables: dict[str, tuple[np.ndarray, np.ndarray]]) -> Float[np.ndarray, " n"]:
     """Frequencies (rad/s) at which all variables were computed; a note names the others.
 
-    Entries of motions that the dataset has not are 0, and are no part of this: a variable's NaN are looked for where any
-    other frequency has a number. Raises InputError for frequencies at which a variable is NaN only in part.
+    Entries of motions that the dataset lacks are 0, and do not count. A variable's NaN are looked for where any other
+    frequency has a number.
+
+    Raises:
+        InputError: A variable is NaN only in part at a frequency, or not all variables were computed there.
     """
     lost: dict[float, None] = {}
-    kept: dict[float, None] = {}
+    solved: dict[float, None] = {}
     for name, (omega, values) in variables.items():
         flat = values.reshape(len(omega), -1)
-        given = ~(flat == 0).all(axis=0)
+        present = ~(flat == 0).all(axis=0)
         missing = ~np.isfinite(flat)
-        whole = missing[:, given].all(axis=1) & given.any()
+        whole = missing[:, present].all(axis=1) & present.any()
         partly = missing.any(axis=1) & ~whole
         if partly.any():
             count = int(missing[partly].sum())
-            raise one.wrong(
+            raise dataset.wrong(
                 name,
                 "finite numbers",
                 f"{count} that are not, at omega {listed(omega[partly])} rad/s",
                 "Where all of a frequency is NaN, it is left out.",
             )
         lost |= dict.fromkeys(omega[whole].tolist())
-        kept |= dict.fromkeys(omega[~whole].tolist())
-    if mixed := [w for w in lost if w in kept and np.isfinite(w) and w > 0]:
+        solved |= dict.fromkeys(omega[~whole].tolist())
+    if mixed := [w for w in lost if w in solved and np.isfinite(w) and w > 0]:
         names = " and ".join(variables)
-        raise one.wrong(names, "numbers for both at each frequency", f"one alone at omega {listed(np.array(mixed))} rad/s")
+        raise dataset.wrong(names, "numbers for both at each frequency", f"one alone at omega {listed(np.array(mixed))} rad/s")
     finite = np.array(sorted(w for w in lost if np.isfinite(w) and w > 0))
     if finite.size:
         many = "frequencies" if finite.size > 1 else "frequency"
-        one.notes.append(
-            f"{one.source}: {finite.size} {many} left out, at which nothing was computed (NaN): omega {listed(finite)} rad/s"
-        )
-    return np.array([w for w in kept if w not in lost])
+        where = f"at which nothing was computed (NaN): omega {listed(finite)} rad/s"
+        dataset.notes.append(f"{dataset.source}: {finite.size} {many} left out, {where}")
+    return np.array([w for w in solved if w not in lost])
 
 
 def listed(omega: Float[np.ndarray, " n"]) -> str:
     """Frequencies as a message names them."""
-    some = ", ".join(f"{w:.4g}" for w in omega[:MAX_LISTED_FREQUENCIES])
-    return some + (f" ... {omega[-1]:.4g}" if len(omega) > MAX_LISTED_FREQUENCIES else "")
+    text = ", ".join(f"{w:.4g}" for w in omega[:MAX_LISTED_FREQUENCIES])
+    return text + (f" ... {omega[-1]:.4g}" if len(omega) > MAX_LISTED_FREQUENCIES else "")
 
 
-def single(one: Dataset, name: str, apart: tuple[str, ...]) -> Any:
+def single(dataset: Dataset, name: str, apart: tuple[str, ...]) -> Any:
     """A variable without its dimensions other than `apart`, which may have one entry only."""
-    values = one.data[name]
+    values = dataset.data[name]
     for dim in [dim for dim in values.dims if dim not in apart]:
         if values.sizes[dim] > 1:
-            raise one.wrong(f"{name}.{dim}", "one entry", f"{values.sizes[dim]}")
+            raise dataset.wrong(f"{name}.{dim}", "one entry", f"{values.sizes[dim]}")
         values = values.isel({dim: 0})
     return values
 
 
-def along_omega(one: Dataset, name: str) -> str:
+def along_omega(dataset: Dataset, name: str) -> str:
     """The dimension of a variable that omega runs along."""
-    values = one.data[name]
+    values = dataset.data[name]
     if "omega" not in values.coords or values.coords["omega"].ndim != 1:
         dims = f"dimensions {', '.join(map(str, values.dims))}"
-        raise one.wrong(f"{name}.omega", "a dimension of angular frequencies", dims)
+        raise dataset.wrong(f"{name}.omega", "a dimension of angular frequencies", dims)
     return str(values.coords["omega"].dims[0])
 
 
-def motions(one: Dataset, name: str, dim: str) -> list[int]:
+def motions(dataset: Dataset, name: str, dim: str) -> list[int]:
     """The motions, from 0, that a variable's dimension names."""
-    values = one.data[name]
+    values = dataset.data[name]
     if dim not in values.dims or dim not in values.coords:
-        raise one.wrong(f"{name}.{dim}", "a dimension with names", f"dimensions {', '.join(map(str, values.dims))}")
+        raise dataset.wrong(f"{name}.{dim}", "a dimension with names", f"dimensions {', '.join(map(str, values.dims))}")
     names = [_text(label).rpartition(BODY_SEPARATOR)[2].strip().lower() for label in values.coords[dim].values]
     if unknown := [label for label in names if label not in DOFS]:
         among = f"motions among {', '.join(DOFS).title()}"
-        raise one.wrong(f"{name}.{dim}", among, shown(unknown[0]), suggest(unknown[0], DOFS))
+        raise dataset.wrong(f"{name}.{dim}", among, shown(unknown[0]), suggest(unknown[0], DOFS))
     if len(set(names)) < len(names):
         twice = next(label for label in names if names.count(label) > 1)
-        raise one.wrong(f"{name}.{dim}", "each motion once", f"{twice} {names.count(twice)} times")
+        raise dataset.wrong(f"{name}.{dim}", "each motion once", f"{twice} {names.count(twice)} times")
     return [DOFS.index(label) for label in names]
 
 
-def _cube(one: Dataset, name: str) -> Float[np.ndarray, "w 6 6"]:
+def _cube(dataset: Dataset, name: str) -> Float[np.ndarray, "w 6 6"]:
     """A variable by frequency, influenced and radiating motion."""
-    rows = [motions(one, name, dim) for dim in reversed(PAIR)]
-    along = along_omega(one, name)
-    values = single(one, name, (along, *PAIR))
+    rows = [motions(dataset, name, dim) for dim in reversed(PAIR)]
+    along = along_omega(dataset, name)
+    values = single(dataset, name, (along, *PAIR))
     cube = np.zeros((values.sizes[along], 6, 6))
     cube[np.ix_(range(len(cube)), *rows)] = np.asarray(values.transpose(along, *reversed(PAIR)).values)
     return cube

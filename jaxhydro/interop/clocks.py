@@ -52,23 +52,23 @@ def seconds(cells: Sequence[str | None]) -> tuple[np.ndarray, dict[int, str]]:
         hour = hour % 12 + 12 * (half.lower() == "pm") if half else hour
         values[i] = 3600.0 * hour + 60.0 * int(minutes) + float(rest.replace(",", ".")) - _offset(zone)
         days[i], stamped[i] = day, day is not None
-    known = np.flatnonzero(np.isfinite(values))
-    if stamped[known].any() and not stamped[known].all():
-        wrong |= {int(i): "a date, as the other rows have" for i in known[~stamped[known]]}
-    elif len(known) and stamped[known[0]]:
+    valid = np.flatnonzero(np.isfinite(values))
+    if stamped[valid].any() and not stamped[valid].all():
+        wrong |= {int(i): "a date, as the other rows have" for i in valid[~stamped[valid]]}
+    elif len(valid) and stamped[valid[0]]:
         dates = {day: _date(day) for day in dict.fromkeys(days) if day is not None}
         if len(dates) > 1:
             wrong |= {
                 i: "a date in the order year-month-day, since the dates differ"
-                for i in map(int, known)
+                for i in map(int, valid)
                 if dates[str(days[i])] is None
             }
             numbers = {day: 0.0 if date is None else date for day, date in dates.items()}
-            first = numbers[str(days[known[0]])]
-            values[known] += DAY * np.array([numbers[str(days[i])] - first for i in known])
-        values -= values[known[0]] if not wrong else 0.0
-    elif len(known):  # midnight: a step back by more than half a day
-        values[known[1:]] += DAY * np.cumsum(np.diff(values[known]) < -DAY / 2)
+            first = numbers[str(days[valid[0]])]
+            values[valid] += DAY * np.array([numbers[str(days[i])] - first for i in valid])
+        values -= values[valid[0]] if not wrong else 0.0
+    elif len(valid):  # midnight: a step back by more than half a day
+        values[valid[1:]] += DAY * np.cumsum(np.diff(values[valid]) < -DAY / 2)
     return values, wrong
 
 

@@ -1,4 +1,4 @@
-"""Water that another program's results were computed for: phases of its waves, and where it is not the platform's."""
+"""Water of another program's results: phases of its waves, and differences from the platform's water."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -31,41 +31,43 @@ def wave_phase(
     return np.exp(-1j * k * (point @ [np.cos(np.radians(heading)), np.sin(np.radians(heading))]))
 
 
-def density_scale(source: str, own: float | None, density: float | None, notes: list[str]) -> float:
-    """Factor from forces in a file's water to forces in the platform's; a note is appended where it is not 1.
+def density_scale(source: str, file_density: float | None, density: float | None, notes: list[str]) -> float:
+    """Factor from forces in a file's water to forces in the platform's water.
+
+    A note is appended where it is not 1.
 
     Args:
         source: The file.
-        own: Density of its water (kg/m³); None where it does not say.
+        file_density: Density of its water (kg/m³); None where it does not say.
         density: Of the platform's water (kg/m³); None where it is not asked for.
         notes: Notes.
     """
-    if density is None or own is None or abs(density / own - 1) < MAX_DENSITY_MISMATCH:
+    if density is None or file_density is None or abs(density / file_density - 1) < MAX_DENSITY_MISMATCH:
         return 1.0
-    notes.append(f"{source}: computed for a density of {own:g} kg/m3: forces are scaled to {density:g} kg/m3")
-    return density / own
+    notes.append(f"{source}: computed for a density of {file_density:g} kg/m3: forces are scaled to {density:g} kg/m3")
+    return density / file_density
 
 
 def water_notes(
-    source: str, own: tuple[float | None, float | None], gravity: float | None, depth: float | None, lowest: float
+    source: str, file_water: tuple[float | None, float | None], gravity: float | None, depth: float | None, lowest: float
 ) -> list[str]:
     """Notes where gravity and depth are not the platform's, and matter.
 
     Args:
         source: The file.
-        own: Its gravity (m/s²) and depth (m); None where it does not say.
+        file_water: Its gravity (m/s²) and depth (m); None where it does not say.
         gravity: Of the platform (m/s²).
         depth: Of the platform's water (m).
         lowest: Lowest frequency of the file (rad/s).
     """
-    own_gravity, own_depth = own
+    file_gravity, file_depth = file_water
     notes = []
-    if gravity is not None and own_gravity is not None and abs(own_gravity / gravity - 1) > MAX_GRAVITY_MISMATCH:
-        notes.append(f"{source}: computed for a gravity of {own_gravity:g} m/s2, the platform has {gravity:g} m/s2")
-    if depth is None or own_depth is None:
+    if gravity is not None and file_gravity is not None and abs(file_gravity / gravity - 1) > MAX_GRAVITY_MISMATCH:
+        notes.append(f"{source}: computed for a gravity of {file_gravity:g} m/s2, the platform has {gravity:g} m/s2")
+    if depth is None or file_depth is None:
         return notes
-    shallow = lowest**2 / (own_gravity or 9.81) * min(own_depth, depth) < DEEP_WATER_KH
-    if abs(min(own_depth, 1e9) / depth - 1) > MAX_DEPTH_MISMATCH and shallow:
-        depths = f"computed for a depth of {own_depth:g} m, the platform has {depth:g} m"
+    shallow = lowest**2 / (file_gravity or 9.81) * min(file_depth, depth) < DEEP_WATER_KH
+    if abs(min(file_depth, 1e9) / depth - 1) > MAX_DEPTH_MISMATCH and shallow:
+        depths = f"computed for a depth of {file_depth:g} m, the platform has {depth:g} m"
         notes.append(f"{source}: {depths}, and its longest waves feel the bed")
     return notes

@@ -1,4 +1,4 @@
-"""What a reader of another program's model hands over: a platform file and what became of each item of the source."""
+"""Result of reading another program's model: a platform file, and what became of each source item."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

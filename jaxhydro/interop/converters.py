@@ -23,12 +23,12 @@ def convert_file(path: Path) -> Conversion:
     Raises:
         InputError: No program is known by the ending, or the file is missing or broken.
     """
-    known = ", ".join(f"{what} ({ending})" for ending, (what, _, _) in READERS.items())
+    expected = ", ".join(f"{kind} ({ending})" for ending, (kind, _, _) in READERS.items())
     if path.is_dir():
-        raise InputError(str(path), [Problem("", known, "a folder", "Name the file in it.")])
+        raise InputError(str(path), [Problem("", expected, "a folder", "Name the file in it.")])
     if path.suffix.lower() not in READERS:
         found = f"a file that ends in {path.suffix}" if path.suffix else "a name without an ending"
-        raise InputError(str(path), [Problem("", known, found)])
+        raise InputError(str(path), [Problem("", expected, found)])
     if not path.exists():
         raise InputError(str(path), [Problem("", READERS[path.suffix.lower()][0], "no such file", suggest_path(path))])
     _, module, function = READERS[path.suffix.lower()]

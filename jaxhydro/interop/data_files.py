@@ -52,7 +52,7 @@ def read_table(path: str | Path, keep_text: bool = False) -> pd.DataFrame:
         raise wrong(path, "file", "rows of numbers", "no rows")
     numeric = any(kind.kind == "f" for kind in table.dtypes)
     if (mistakes := table.attrs.get("not_numbers")) and not (keep_text and numeric):
-        raise InputError(str(path), [problem for some in mistakes.values() for problem in some])
+        raise InputError(str(path), [problem for problems in mistakes.values() for problem in problems])
     if not numeric:
         raise wrong(path, "file", "a numeric column", "only text, in " + ", ".join(map(str, table.columns[:10])))
     stated = {str(name): stated_unit(str(name), table.attrs.get("units", {})) for name in table.columns}
@@ -61,7 +61,11 @@ def read_table(path: str | Path, keep_text: bool = False) -> pd.DataFrame:
 
 
 def _reader(path: Path) -> Callable[[Path], pd.DataFrame]:
-    """The reader for a file, by its first bytes, then by its ending. Raises InputError for what is no data file."""
+    """Reader for a file, by its first bytes, then by its ending.
+
+    Raises:
+        InputError: It is no data file.
+    """
     ending = path.suffix.lower()
     if ending in _NO_DATA:
         raise wrong(path, "file name", _DATA, f"one that ends in {ending}")
@@ -100,19 +104,19 @@ def _netcdf(path: Path) -> pd.DataFrame:
         with xr.open_dataset(path, engine="h5netcdf" if hdf5 else "scipy", decode_times=False) as data:
             flat = {str(name): v for name, v in data.variables.items() if v.ndim == 1 and v.dtype.kind in "iufb"}
             along = [name for name, _ in Counter(item.dims[0] for item in flat.values()).most_common(1)]
-            found = {name: item.to_numpy() for name, item in flat.items() if item.dims[0] in along}
-            units = {name: str(flat[name].attrs["units"]) for name in found if "units" in flat[name].attrs}
+            series = {name: item.to_numpy() for name, item in flat.items() if item.dims[0] in along}
+            units = {name: str(flat[name].attrs["units"]) for name in series if "units" in flat[name].attrs}
             held = [str(name) for name in data.variables]
     except InputError:
         raise
     except Exception as error:  # each of xarray's engines has its own
         raise wrong(path, "file", "a NetCDF file", reason(error)) from error
-    times = [name for name, unit in units.items() if name in found and _SINCE.fullmatch(unit)]
+    times = [name for name, unit in units.items() if name in series and _SINCE.fullmatch(unit)]
     for name in times:  # a date in the unit: seconds from the first row
-        moments = np.asarray(found[name] - found[name][:1], float)
+        moments = np.asarray(series[name] - series[name][:1], float)
         match = _SINCE.fullmatch(units.pop(name))
-        found[name] = moments * _CF_UNITS[match[1][:3].lower()] if match else moments
-    table = side_by_side(path, found, held)
+        series[name] = moments * _CF_UNITS[match[1][:3].lower()] if match else moments
+    table = side_by_side(path, series, held)
     table.attrs |= {"units": units, "times": times}
     return table
 
@@ -166,13 +170,13 @@ def _with_units(table: pd.DataFrame, info: Mapping[str, Any]) -> pd.DataFrame:
 
 def _openfast_binary(path: Path) -> pd.DataFrame:
     load = _openfast_reader("load_binary_output", path)
-    found, expected = path.stat().st_size, _outb_size(path)
-    if found < expected or not expected:  # the library would reserve whatever memory the header asks for
+    size, expected = path.stat().st_size, _outb_size(path)
+    if size < expected or not expected:  # the library would reserve whatever memory the header asks for
         raise wrong(
             path,
             "file",
             "a whole OpenFAST binary output (.outb)",
-            f"{found} bytes" + (f" where {expected} are announced" if expected else " that are not one"),
+            f"{size} bytes" + (f" where {expected} are announced" if expected else " that are not one"),
         )
     try:
         with np.errstate(all="ignore"):  # a constant channel may have a scale of zero
@@ -183,7 +187,7 @@ def _openfast_binary(path: Path) -> pd.DataFrame:
 
 
 def _outb_size(path: Path) -> int:
-    """What an .outb file's header says its size is, in bytes; 0 for a header that cannot be."""
+    """Size (bytes) that an .outb file's header states; 0 for a header that cannot be."""
     with path.open("rb") as file:
 
         def integer(kind: str) -> int:

@@ -75,12 +75,12 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
     rows = [(number, line) for number, line in enumerate(lines, first) if line.strip()]
     if not any(not line.lstrip().startswith(COMMENTS) for _, line in rows):
         raise wrong(path, "file", "a table with a header", "an empty file" if not rows else "comments only")
-    found = layout(rows)
-    if not found.body:
+    parts = layout(rows)
+    if not parts.body:
         raise wrong(path, "file", "rows of numbers under the header", "a header only")
-    body, numbers = [line for _, line in found.body], [number for number, _ in found.body]
-    counts = widths(body, found.delimiter)
-    stated = split(found.misfit, found.delimiter) if found.misfit is not None else found.names
+    body, numbers = [line for _, line in parts.body], [number for number, _ in parts.body]
+    counts = widths(body, parts.delimiter)
+    stated = split(parts.misfit, parts.delimiter) if parts.misfit is not None else parts.names
     width = len(stated) if stated and len(stated) in counts else Counter(counts).most_common(1)[0][0]
     torn = [i for i, count in enumerate(counts) if count != width]
     if torn:
@@ -99,22 +99,25 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
     misfit = wrong(
         path, "header", f"{width} names, one for each column", f"{len(stated or ())}: " + ", ".join((stated or [])[:10])
     )
-    if found.misfit is not None or len(found.names or ()) > width:
+    if parts.misfit is not None or len(parts.names or ()) > width:
         raise misfit
-    names = [str(i) for i in range(width)] if found.names is None else found.names
-    table = _numbers(path, body, numbers, found.delimiter, names + [""] * (width - len(names)))
+    names = [str(i) for i in range(width)] if parts.names is None else parts.names
+    table = _numbers(path, body, numbers, parts.delimiter, names + [""] * (width - len(names)))
     if not table.columns[-1] and table.iloc[:, -1].isna().all():  # every line ends with the delimiter
         table = table.iloc[:, :-1]
-    if found.names is not None and len(names) < len(table.columns):
+    if parts.names is not None and len(names) < len(table.columns):
         raise misfit
-    table.attrs["units"] = dict(zip(names, found.units or ()))
+    table.attrs["units"] = dict(zip(names, parts.units or ()))
     if numbers[-1] - numbers[0] == len(numbers) - 1:
         table.attrs["row"] = numbers[0]
     return table
 
 
 def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | None, names: list[str]) -> pd.DataFrame:
-    """The body as float columns; a column with text stays text, and what is wrong in one that is mostly numbers is kept."""
+    """Body of a table as float columns; a column with text stays text.
+
+    Mistakes in a column that is mostly numbers are kept in the table's `attrs`.
+    """
     body = "\n".join(lines)
     options: dict[str, Any] = {
         "sep": r"\s+" if delimiter is WHITESPACE else delimiter,
@@ -147,8 +150,8 @@ def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | Non
         text = text.where(cells.notna() & (text != ""), None)
         expected: dict[int, str]
         if sum(is_time(cell) for cell in text if isinstance(cell, str)) > len(text) / 2:
-            found, expected = seconds([None if cell is None else str(cell) for cell in text])
-            values = pd.Series(found)
+            elapsed, expected = seconds([None if cell is None else str(cell) for cell in text])
+            values = pd.Series(elapsed)
             times.append(name)
         else:
             as_written = text.map(lambda cell: plain(cell) if isinstance(cell, str) else cell)
@@ -160,8 +163,8 @@ def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | Non
         more = f"{len(expected)} such cells in this column" if len(expected) > _SHOWN else ""
         if expected:
             not_numbers[i] = [
-                Problem(f"row {rows[row]}, column {name or i}", what, repr(cells.iloc[row]), more)
-                for row, what in sorted(expected.items())[:_SHOWN]
+                Problem(f"row {rows[row]}, column {name or i}", required, repr(cells.iloc[row]), more)
+                for row, required in sorted(expected.items())[:_SHOWN]
             ]
         columns.append(cells.astype(object) if expected else values)
     table = pd.concat(columns, axis=1)

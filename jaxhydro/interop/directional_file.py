@@ -1,4 +1,7 @@
-"""Directional spectra from files, in the conventions of wavespectra: CSV and NetCDF of efth over freq and dir."""
+"""Directional spectra from CSV and NetCDF files, in the conventions of wavespectra.
+
+The files have efth over freq and dir.
+"""
 
 import math
 from os import PathLike

@@ -1,4 +1,4 @@
-"""What another program's model is written from, and what is written."""
+"""Platform as the source of another program's model, and the files of that model."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

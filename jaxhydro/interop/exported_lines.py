@@ -12,9 +12,9 @@ from jaxhydro.loads.catenary.catenary_lines import segment_names
 
 
 def mooring_system_of(source: ExportSource, load: CatenaryLines, solid_density: float | None = None) -> MooringSystem:
-    """Points, line types and lines with calibrated values; every line runs from its anchor to its fairlead.
+    """Points, line types and lines of a platform's catenary lines, with calibrated values.
 
-    A line type's mass in air is that which weighs as much in water as here.
+    Every line runs from its anchor to its fairlead. A line type's mass in air gives the same weight in water as here.
 
     Args:
         source: The platform.
@@ -39,12 +39,12 @@ def mooring_system_of(source: ExportSource, load: CatenaryLines, solid_density: 
     for i, kinds in enumerate(load.types):
         lengths = [float(load.unstretched_length[name]) for name in segment_names(i, len(kinds))]
         along = np.concatenate([[0.0], np.cumsum(lengths)]) / sum(lengths)
-        for k, at in enumerate(along):
+        for k, fraction in enumerate(along):
             attachment = Attachment.GROUND if k == 0 else Attachment.PLATFORM if k == len(kinds) else Attachment.FREE
-            middle = anchors[i] + at * (fairleads[i] - anchors[i])
-            place = {Attachment.GROUND: anchors[i], Attachment.PLATFORM: fairleads[i]}.get(attachment, middle)
+            middle = anchors[i] + fraction * (fairleads[i] - anchors[i])
+            position = {Attachment.GROUND: anchors[i], Attachment.PLATFORM: fairleads[i]}.get(attachment, middle)
             name = f"point{len(points) + 1}"
-            points[name] = MooringPoint(name, attachment, (float(place[0]), float(place[1]), float(place[2])))
+            points[name] = MooringPoint(name, attachment, (float(position[0]), float(position[1]), float(position[2])))
             if k:
                 line = f"line{len(lines) + 1}"
                 lines[line] = MooringLine(line, (f"point{len(points) - 1}", name), lengths[k - 1], kinds[k - 1])

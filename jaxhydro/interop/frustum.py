@@ -1,15 +1,20 @@
-"""Mass, first and second moments of tapered members: frustums of circular or rectangular section, solid or hollow.
+"""Mass, first and second moments of tapered members.
 
-A section has two sizes, which vary linearly along the axis. So its area is a quadratic and its second moments are quartics in
-the position z = s L, and their integrals over 0 <= s <= 1 are sums of Euler's beta integrals (Abramowitz and Stegun 1964, eq.
-6.2.1 and 6.2.2):
+Members are frustums of circular or rectangular section, solid or hollow.
+
+A section has two sizes, which vary linearly along the axis. So its area is a quadratic in the position z = s L, and its
+second moments are quartics. Their integrals over 0 <= s <= 1 are sums of Euler's beta integrals (Abramowitz and Stegun
+1964, eq. 6.2.1 and 6.2.2):
 
     B(i, n) = integral of s^i (1 - s)^(n - i) ds = i! (n - i)! / (n + 1)!
 
-For a circle of radii r1 and r2 they are the textbook forms pi L (r1^2 + r1 r2 + r2^2) / 3 for the volume and pi L (r1^4 + r1^3
-r2 + r1^2 r2^2 + r1 r2^3 + r2^4) / 10 for the second moment about the axis (Weisstein, Conical Frustum, MathWorld). RAFT
-has other formulas (helpers.py at e6cb69e: FrustumVCV, FrustumMOI, RectangularFrustumMOI). They agree, but for the volume of a
-rectangular frustum whose two sides taper by different ratios: RAFT takes the geometric mean of the areas there.
+For a circle of radii r1 and r2 they are the textbook forms (Weisstein, Conical Frustum, MathWorld):
+
+    volume: pi L (r1^2 + r1 r2 + r2^2) / 3
+    second moment about the axis: pi L (r1^4 + r1^3 r2 + r1^2 r2^2 + r1 r2^3 + r2^4) / 10
+
+RAFT has other formulas (helpers.py at e6cb69e: FrustumVCV, FrustumMOI, RectangularFrustumMOI). They agree, but for the
+volume of a rectangular frustum whose two sides taper by different ratios. RAFT takes the geometric mean of the areas there.
 """
 
 import math
@@ -78,10 +83,10 @@ def solid_frustum(first: Sizes, last: Sizes, length: float, circular: bool) -> M
     Returns:
         Moments for a density of 1: m³, m⁴ and m⁵.
     """
-    one, two = ((float(first[k]), float(last[k])) for k in (0, 1))
+    size1, size2 = ((float(first[k]), float(last[k])) for k in (0, 1))
     area, cubic = AREA[circular] * length, SECOND_MOMENT[circular] * length
-    volume, moment, second = (area * length**k * _integral([one, two], k) for k in range(3))
-    return Moments(volume, moment, second, (cubic * _integral([one] * 3 + [two]), cubic * _integral([one] + [two] * 3)))
+    volume, moment, second = (area * length**k * _integral([size1, size2], k) for k in range(3))
+    return Moments(volume, moment, second, (cubic * _integral([size1] * 3 + [size2]), cubic * _integral([size1] + [size2] * 3)))
 
 
 def hollow_frustum(
@@ -92,13 +97,27 @@ def hollow_frustum(
     length: float,
     circular: bool,
 ) -> Moments:
-    """A frustum less a hole of the same length: see `solid_frustum`; the hole's sizes (m) are `inner_first`, `inner_last`."""
+    """Frustum less a hole of the same length: see `solid_frustum`.
+
+    Args:
+        first: The two sizes (m) of the face at z = 0.
+        last: The two sizes (m) of the face at z = length.
+        inner_first: Sizes (m) of the hole at z = 0.
+        inner_last: Sizes (m) of the hole at z = length.
+        length: Between the faces, m.
+        circular: Whether the section is a circle, else a rectangle.
+    """
     outer = solid_frustum(first, last, length, circular)
     return outer + solid_frustum(inner_first, inner_last, length, circular).times(-1.0)
 
 
 def _integral(factors: Sequence[tuple[float, float]], power: int = 0) -> float:
-    """Integral over 0 <= s <= 1 of s^power times the product of linear functions, each with its values at 0 and 1."""
+    """Integral over 0 <= s <= 1 of s^power times a product of linear functions of s.
+
+    Args:
+        factors: Values of each linear function at s = 0 and s = 1.
+        power: Power of s.
+    """
     terms: Float[np.ndarray, " n"] = np.ones(1)  # of s^i (1 - s)^(n - i), i = 0 ... n
     for at_first, at_last in (*factors, *[(0.0, 1.0)] * power):
         terms = np.append(at_first * terms, 0.0) + np.append(0.0, at_last * terms)

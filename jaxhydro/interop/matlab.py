@@ -37,33 +37,36 @@ def matlab(path: Path) -> pd.DataFrame:
     structs = [
         {field: getattr(item, field) for field in item._fieldnames} for item in content.values() if hasattr(item, "_fieldnames")
     ]
-    found: dict[str, np.ndarray] = {}
+    vectors: dict[str, np.ndarray] = {}
     for group in (content, *structs):
-        found |= {name: values for name, values in _vectors(group).items() if name not in found}
-    return side_by_side(path, found, content)
+        vectors |= {name: values for name, values in _vectors(group).items() if name not in vectors}
+    return side_by_side(path, vectors, content)
 
 
 def _vectors(group: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """The numeric vectors of one level, and the columns of matrices; a cell array of as many names names these."""
+    """Numeric vectors of one level, and the columns of its matrices.
+
+    A cell array of as many names as a matrix has columns names these.
+    """
     arrays = {name: np.asarray(v) for name, v in group.items() if not hasattr(v, "_fieldnames")}
     labels = [v for v in arrays.values() if v.ndim == 1 and v.dtype.kind in "OU"]
     numeric = {name: v for name, v in arrays.items() if v.dtype.kind in "iufb"}
-    found = {name: v for name, v in numeric.items() if v.ndim == 1}
+    vectors = {name: v for name, v in numeric.items() if v.ndim == 1}
     for name, matrix in numeric.items():
         if matrix.ndim != 2:
             continue
         label = next((v for v in labels if len(v) in matrix.shape), None)
         columns = matrix if label is not None and len(label) != matrix.shape[1] else matrix.T
         names = [f"{name}[{i}]" for i in range(len(columns))] if label is None else [str(v).strip() for v in label]
-        found |= dict(zip(names, columns))
-    return found
+        vectors |= dict(zip(names, columns))
+    return vectors
 
 
 def mat73(path: Path) -> pd.DataFrame:
-    """Version 7.3 is HDF5: vectors at the top, or in one level of groups (a struct)."""
+    """Numeric vectors of a version 7.3 file (HDF5), at its top or in one level of groups (a struct)."""
     import h5py
 
-    found: dict[str, np.ndarray] = {}
+    vectors: dict[str, np.ndarray] = {}
     try:
         with h5py.File(path) as file:
             held = list(file)
@@ -73,14 +76,20 @@ def mat73(path: Path) -> pd.DataFrame:
                     if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iuf":
                         continue
                     if max(item.shape, default=0) == item.size and item.attrs.get("MATLAB_class") != b"char":
-                        found.setdefault(name, np.ravel(item[()]))
+                        vectors.setdefault(name, np.ravel(item[()]))
     except Exception as error:
         raise wrong(path, "file", "a MATLAB 7.3 file", reason(error), "save it again with -v7, or as CSV") from error
-    return side_by_side(path, found, held)
+    return side_by_side(path, vectors, held)
 
 
 def side_by_side(path: Path, series: Mapping[str, np.ndarray], held: Iterable[str]) -> pd.DataFrame:
-    """Vectors of the longest length, put side by side; much shorter ones are constants of the file and left out."""
+    """Vectors of the longest length, put side by side.
+
+    Vectors of less than half that length are constants of the file, and left out.
+
+    Raises:
+        InputError: There is no vector of two values or more, or one is shorter than the longest, but at least half as long.
+    """
     length = max((len(values) for values in series.values()), default=0)
     if length < 2:
         raise wrong(
@@ -93,15 +102,18 @@ def side_by_side(path: Path, series: Mapping[str, np.ndarray], held: Iterable[st
     if odd:
         raise InputError(
             str(path),
-            [Problem(f"variable {name}", f"{length} values, as the longest has", f"{found}", "") for name, found in odd[:5]],
+            [Problem(f"variable {name}", f"{length} values, as the longest has", f"{count}", "") for name, count in odd[:5]],
         )
     return pd.DataFrame({name: np.asarray(v, float) for name, v in series.items() if len(v) == length})
 
 
 def _sound(data: bytes) -> bool:
-    """Whether a version 5 file's elements nest as they say they do: scipy takes their word, and the process dies.
+    """Whether the elements of a version 5 file nest as they say they do.
 
-    Format: MathWorks, MAT-File Format, chapter 1. Other versions pass: they are left to scipy.
+    scipy takes their word for it, and the process dies where they do not. Other versions pass: they are left to scipy.
+
+    References:
+        MathWorks, MAT-File Format, chapter 1.
     """
     marks = {b"IM": "<", b"MI": ">"}
     return data[126:128] not in marks or _nested(data[128:], marks[data[126:128]])
@@ -109,14 +121,14 @@ def _sound(data: bytes) -> bool:
 
 def _nested(data: bytes, order: str, depth: int = 0) -> bool:
     children: list[tuple[int, bytes]] = []
-    at = 0
-    while at + 8 <= len(data):
-        kind, size = struct.unpack_from(order + "2I", data, at)
+    offset = 0
+    while offset + 8 <= len(data):
+        kind, size = struct.unpack_from(order + "2I", data, offset)
         if kind >> 16:  # a small element: its size and its four bytes are in the tag
-            kind, size, start, at = kind & 0xFFFF, kind >> 16, at + 4, at + 8
+            kind, size, start, offset = kind & 0xFFFF, kind >> 16, offset + 4, offset + 8
             inside = size <= 4
         else:
-            start, at = at + 8, at + 8 + size + (0 if kind == _COMPRESSED else -size % 8)
+            start, offset = offset + 8, offset + 8 + size + (0 if kind == _COMPRESSED else -size % 8)
             inside = start + size <= len(data)
         if kind not in _ELEMENTS or not inside or depth > 20:
             return False
@@ -131,7 +143,7 @@ def _nested(data: bytes, order: str, depth: int = 0) -> bool:
 
 
 def _matrix(children: list[tuple[int, bytes]], order: str) -> bool:
-    """Flags, dimensions, name, and as many parts of the right kind as these ask for."""
+    """Whether a matrix has flags, dimensions, name, and the parts that these ask for."""
     if len(children) < 3 or children[0][0] != 6 or children[1][0] not in (5, 6) or len(children[0][1]) != 8:
         return bool(children) and _class(children, order)[0] == _OPAQUE
     (sort, flags), bounds = _class(children, order), children[1][1]

@@ -95,7 +95,9 @@ class NoCatenaries(Exception):
 
 
 def catenary_section(system: MooringSystem, depth: float, density: float, gravity: float) -> dict[str, Any]:
-    """The platform file's `mooring` of kind `catenary`: every line from its anchor to the platform, through free points.
+    """Section `mooring` of the platform file, of kind `catenary`.
+
+    Every line runs from its anchor to the platform, through free points.
 
     Args:
         system: The moorings.
@@ -109,16 +111,16 @@ def catenary_section(system: MooringSystem, depth: float, density: float, gravit
     Raises:
         NoCatenaries: Lines float, branch, carry a mass or end elsewhere.
     """
-    left = dict(system.lines)
+    remaining = dict(system.lines)
     rows: list[dict[str, Any]] = []
     used: dict[str, None] = {}  # types in the order of the lines
     for anchor in (point for point in system.points.values() if point.attachment is Attachment.GROUND):
-        while path := _path(system, left, anchor):
+        while path := _path(system, remaining, anchor):
             fairlead, segments = path
             used |= dict.fromkeys(segment["type"] for segment in segments)
             rows.append({"anchor": [*anchor.position], "fairlead": [*fairlead.position], "segments": segments})
-    if left:
-        raise NoCatenaries(f"line {next(iter(left))} does not run from the ground to the platform")
+    if remaining:
+        raise NoCatenaries(f"line {next(iter(remaining))} does not run from the ground to the platform")
     types = {}
     for name in used:
         kind = system.line_types[name]
@@ -131,17 +133,23 @@ def catenary_section(system: MooringSystem, depth: float, density: float, gravit
 
 
 def _path(
-    system: MooringSystem, left: dict[str, MooringLine], anchor: MooringPoint
+    system: MooringSystem, remaining: dict[str, MooringLine], anchor: MooringPoint
 ) -> tuple[MooringPoint, list[dict[str, Any]]] | None:
-    """Fairlead and segments of one of the lines that are left at an anchor; takes its parts away from `left`."""
+    """Fairlead and segments of one of the remaining lines at an anchor; None where there is none.
+
+    Its parts are taken out of `remaining`.
+
+    Raises:
+        NoCatenaries: It does not end on the platform, or a point between two lines has a mass or a volume.
+    """
     point, segments = anchor, []
-    while line := next((line for line in left.values() if point.name in line.ends), None):
-        del left[line.name]
+    while line := next((line for line in remaining.values() if point.name in line.ends), None):
+        del remaining[line.name]
         segments.append({"type": line.line_type, "length": line.length})
         point = system.points[line.ends[1] if line.ends[0] == point.name else line.ends[0]]
         if point.attachment is Attachment.PLATFORM:
             return point, segments
-        meeting = sum(point.name in other.ends for other in system.lines.values())
+        meeting = sum(point.name in each_line.ends for each_line in system.lines.values())
         if point.attachment is not Attachment.FREE or meeting != 2:
             break
         if point.mass or point.volume:

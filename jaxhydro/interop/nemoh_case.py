@@ -16,7 +16,7 @@ TRANSLATION, ROTATION = 1, 2  # kinds of motions and of forces
 
 
 class NemohCase(NamedTuple):
-    """What Nemoh.cal says of a body's results.
+    """Water, wave origin and reference point of a body's results, as Nemoh.cal states them.
 
     Attributes:
         density: Of the water (kg/m³).
@@ -71,8 +71,8 @@ def _case(path: Path, body: int) -> NemohCase:
         rows.skip(rows.count())
         if number == body:
             centre = _centre(path, tables)
-    there = ", ".join(f"{x:g}" for x in centre)
-    moved = f"{path}: computed about ({there}) m: moved to the platform's reference point"
+    coordinates = ", ".join(f"{x:g}" for x in centre)
+    moved = f"{path}: computed about ({coordinates}) m: moved to the platform's reference point"
     deep = depth if depth > 0 else np.inf
     return NemohCase(density, gravity, deep, origin, rigid_shift(centre), (moved,) if centre.any() else ())
 
@@ -85,7 +85,7 @@ def _centre(path: Path, tables: list[np.ndarray]) -> Float[np.ndarray, "3"]:
             raise InputError(str(path), [Problem(name, f"{', '.join(DOFS)} in this order", f"{len(table)}, or others")])
     points = np.vstack([table[3:, 4:] for table in tables])
     if np.ptp(points, axis=0).any():
-        found = "; ".join(", ".join(f"{x:g}" for x in one) for one in np.unique(points, axis=0))
+        found = "; ".join(", ".join(f"{x:g}" for x in point) for point in np.unique(points, axis=0))
         raise InputError(str(path), [Problem("", "rotations and moments about one point", found)])
     return points[0]
 
@@ -96,8 +96,8 @@ class _Rows:
     def __init__(self, path: Path) -> None:
         self.path = path
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-        kept = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("---")]
-        self.lines: Iterator[tuple[int, str]] = iter(kept)
+        data_lines = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("---")]
+        self.lines: Iterator[tuple[int, str]] = iter(data_lines)
 
     def take(self, count: int) -> Float[np.ndarray, " n"]:
         """The first numbers of the next line."""
@@ -122,7 +122,7 @@ class _Rows:
             self._next()
 
     def _next(self) -> tuple[int, str]:
-        found = next(self.lines, None)
-        if found is None:
+        row = next(self.lines, None)
+        if row is None:
             raise InputError(str(self.path), [Problem("", "water, bodies and their motions", "the end of the file")])
-        return found
+        return row

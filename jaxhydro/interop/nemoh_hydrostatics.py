@@ -21,11 +21,12 @@ MAX_WEIGHT_MISMATCH = 1e-3  # of density times gravity, without a note
 def read_nemoh_hydrostatics(
     path: str | PathLike[str], *, density: float, gravity: float, notes: list[str] | None = None
 ) -> FileHydrostatics:
-    """Read KH.dat or KH_0.dat (N/m, N, N m/rad), with the Hydrostatics.dat or Hydrostatics_0.dat beside it.
+    """Read KH.dat or KH_0.dat (N/m, N, N m/rad), with Hydrostatics.dat beside it.
 
-    KH includes the weight of the displaced water at (XG, YG, ZG), and its rotations are about the vertical axis through that
-    point. Its water is told by KH(3,3) over the waterplane area: there are versions of Nemoh that take 1025 kg/m³ and
-    9.81 m/s² whatever Nemoh.cal says. From there the stiffness is scaled to the platform's density and gravity.
+    Beside KH_0.dat that is Hydrostatics_0.dat. KH includes the weight of the displaced water at (XG, YG, ZG). Its rotations are
+    about the vertical axis through that point. Its water is told by KH(3,3) over the waterplane area: there are versions of
+    Nemoh that take 1025 kg/m³ and 9.81 m/s² whatever Nemoh.cal says. From there the stiffness is scaled to the platform's
+    density and gravity.
 
     Args:
         path: The file KH.dat.
@@ -47,16 +48,16 @@ def read_nemoh_hydrostatics(
     volume, area = _value(beside, text, "Displacement"), _value(beside, text, "Waterplane area")
     if volume <= 0:
         raise InputError(str(beside), [Problem("Displacement", "a volume above 0", f"{volume:g}")])
-    own = stiffness[2, 2] / area if area > 0 else density * gravity
-    said = []
-    if abs(density * gravity / own - 1) > MAX_WEIGHT_MISMATCH:
-        said.append(f"{path}: of water of {own:.5g} N/m3: scaled to {density * gravity:.5g} N/m3")
+    specific_weight = stiffness[2, 2] / area if area > 0 else density * gravity
+    remarks = []
+    if abs(density * gravity / specific_weight - 1) > MAX_WEIGHT_MISMATCH:
+        remarks.append(f"{path}: of water of {specific_weight:.5g} N/m3: scaled to {density * gravity:.5g} N/m3")
     if x or y:
-        said.append(f"{path}: computed about ({x:g}, {y:g}) m: moved to the platform's reference point")
+        remarks.append(f"{path}: computed about ({x:g}, {y:g}) m: moved to the platform's reference point")
     shift = rigid_shift(np.array([x, y, 0.0]))
     if notes is not None:
-        notes += said
-    return FileHydrostatics(density * gravity / own * shift.T @ stiffness @ shift, volume, z)
+        notes += remarks
+    return FileHydrostatics(density * gravity / specific_weight * shift.T @ stiffness @ shift, volume, z)
 
 
 def _matrix(path: Path) -> Float[np.ndarray, "6 6"]:
@@ -76,7 +77,7 @@ def _matrix(path: Path) -> Float[np.ndarray, "6 6"]:
 
 def _value(path: Path, text: str, name: str) -> float:
     """The number after a name and an equals sign."""
-    found = re.search(rf"\b{name}\s*=\s*({NUMBER})", text)
-    if found is None:
+    match = re.search(rf"\b{name}\s*=\s*({NUMBER})", text)
+    if match is None:
         raise InputError(str(path), [Problem(name, f"{name} = a number", "none")])
-    return float(found[1].upper().replace("D", "E"))
+    return float(match[1].upper().replace("D", "E"))

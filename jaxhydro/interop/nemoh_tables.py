@@ -37,7 +37,13 @@ class _Zone(NamedTuple):
 
 
 class _File(NamedTuple):
-    """A Tecplot file: the first column by "period", "rad/s" or "Hz", body and number of each force, and zones."""
+    """Tecplot file.
+
+    Attributes:
+        by: Kind of the first column: "period", "rad/s" or "Hz".
+        forces: Body and number of each force.
+        zones: Zones.
+    """
 
     by: str
     forces: list[tuple[int, int]]
@@ -64,16 +70,16 @@ def read_nemoh_radiation(
     mine, columns = _columns(path, file, body)
     case = case_of(Path(path), mine)
     titles = [_MOTION.search(zone.title) for zone in file.zones]
-    zones = {(int(found[1]), int(found[2])): zone for found, zone in zip(titles, file.zones) if found}
+    zones = {(int(match[1]), int(match[2])): zone for match, zone in zip(titles, file.zones) if match}
     if missing := [dof for i, dof in enumerate(DOFS, 1) if (mine, i) not in zones]:
         raise _wrong(path, f"a zone of motion in {', '.join(missing)} of body {mine}", f"{len(zones)} zones of motions")
     order, omega = _frequencies(path, file, zones[mine, 1].rows[:, 0], MIN_FREQUENCIES)
     rows = np.stack([zones[mine, i].rows[order] for i in range(1, 7)], axis=2)  # frequency, column, motion
-    said = list(case.notes)
-    scale = density_scale(str(path), case.density, density, said)
+    remarks = list(case.notes)
+    scale = density_scale(str(path), case.density, density, remarks)
     added, damping = (scale * case.shift.T @ rows[:, [c + part for c in columns], :] @ case.shift for part in (0, 1))
     if notes is not None:
-        notes += said
+        notes += remarks
     return RadiationCoefficients(omega, added, damping)
 
 
@@ -89,8 +95,9 @@ def read_nemoh_excitation(
 ) -> Excitation:
     """Read ExcitationForce.tec for waves of one heading.
 
-    Nemoh's quantities go with exp(-i omega t), and its incident wave is exp(i k (x - x_eff)). With F = abs exp(i angle),
-    angles in rad, X is the complex conjugate of F, for waves Re A exp(i (omega t - k x)). Directions are where waves run to.
+    Nemoh's quantities go with exp(-i omega t), and its incident wave is exp(i k (x - x_eff)). The file has F = abs exp(i angle)
+    with angles in rad. X is the complex conjugate of F, for waves Re A exp(i (omega t - k x)). Directions are where waves run
+    to.
 
     Args:
         path: The file.
@@ -155,31 +162,31 @@ def _forces(
     """Frequencies (rad/s), and forces of waves of each heading (deg)."""
     file = _read(path)
     mine, columns = _columns(path, file, body)
-    case, known = case_of(Path(path), mine), _by_heading(path, file)
-    order, omega = _frequencies(path, file, known[0][1].rows[:, 0], 2)
-    said = list(case.notes)
-    scale = density_scale(str(path), case.density, density, said)
-    said += water_notes(str(path), (case.gravity, case.depth), *water, float(omega[0]))
+    case, zones = case_of(Path(path), mine), _by_heading(path, file)
+    order, omega = _frequencies(path, file, zones[0][1].rows[:, 0], 2)
+    remarks = list(case.notes)
+    scale = density_scale(str(path), case.density, density, remarks)
+    remarks += water_notes(str(path), (case.gravity, case.depth), *water, float(omega[0]))
     forces = []
     for heading in headings:
-        rows = next((zone.rows[order] for beta, zone in known if same_heading(beta, heading)), None)
+        rows = next((zone.rows[order] for beta, zone in zones if same_heading(beta, heading)), None)
         if rows is None:
-            there = ", ".join(f"{beta:g}" for beta, _ in known)
-            raise _wrong(path, f"waves of heading {heading:g} deg", f"{there} deg", "beta")
+            listed = ", ".join(f"{beta:g}" for beta, _ in zones)
+            raise _wrong(path, f"waves of heading {heading:g} deg", f"{listed} deg", "beta")
         force = rows[:, columns] * np.exp(-1j * rows[:, [c + 1 for c in columns]])  # the conjugate
         forces.append(scale * case.shift.T @ force.T * wave_phase(omega, case.wave_origin, heading, case.depth, case.gravity))
     if notes is not None:
-        notes += said
+        notes += remarks
     return omega, forces
 
 
 def _by_heading(path: str | PathLike[str], file: _File) -> list[tuple[float, _Zone]]:
     """Zones of wave forces, by their heading (deg)."""
     titles = [_HEADING.search(zone.title) for zone in file.zones]
-    found = [(float(one[1]), zone) for one, zone in zip(titles, file.zones) if one]
-    if not found:
+    zones = [(float(match[1]), zone) for match, zone in zip(titles, file.zones) if match]
+    if not zones:
         raise _wrong(path, "zones of an excitation force, by beta", f"{len(file.zones)} others")
-    return found
+    return zones
 
 
 def _columns(path: str | PathLike[str], file: _File, body: int | None) -> tuple[int, list[int]]:

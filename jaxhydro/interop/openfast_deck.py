@@ -62,9 +62,9 @@ def read_openfast_deck(path: str | PathLike[str]) -> Conversion:
     if platform.get("members"):
         platform |= _forms(deck, items)
     if deck.waves is not None:
-        current, said = read_current(deck.waves, water.depth)
+        current, current_items = read_current(deck.waves, water.depth)
         platform["water"] |= {"current": current} if current else {}
-        items += [*sea_items(deck.waves), *said]
+        items += [*sea_items(deck.waves), *current_items]
     items += [item for file in deck.all() for item in _of_version(file)]
     return Conversion(platform, tuple(items), flow.files)
 
@@ -80,8 +80,8 @@ def _hydrodyn(
     platform |= {"members": hull.members, "coefficients": hull.coefficients} if hull.members else {}
     platform["diffraction"] = "maccamy_fuchs" if hull.diffracting else "none"
     groups = read_fill_groups(file, water.level, water.density, members)
-    ballast, said = ballast_parts(groups, members, file.name)
-    items += said
+    ballast, ballast_items = ballast_parts(groups, members, file.name)
+    items += ballast_items
     if file.has("NMGDepths") and file.whole("NMGDepths"):
         text = "Marine growth has no counterpart: neither its mass nor its thickness nor its coefficients."
         items.append(ConvertedItem(f"{file.name}: NMGDepths", Treatment.LEFT_OUT, text))
@@ -91,7 +91,7 @@ def _hydrodyn(
     items += terms.items
     flow = PotentialFlow()
     if mode == POTENTIAL_FLOW:
-        wet = any(not member.potential and member.joints[0].place[2] < 0.0 for member in members)
+        wet = any(not member.potential and member.joints[0].position[2] < 0.0 for member in members)
         flow = read_potential_flow(file, water.density, wet)
         items += flow.items
     elif mode:
@@ -114,7 +114,10 @@ def _body(parts: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _mooring(deck: DeckFiles, water: WaterColumn, terms: AddedTerms, items: list[ConvertedItem]) -> dict[str, Any]:
-    """MoorDyn's lines as catenaries, HydroDyn's additional stiffness beside them; or its stiffness and preload alone."""
+    """Section `mooring`: MoorDyn's lines as catenaries, or HydroDyn's stiffness and preload alone.
+
+    HydroDyn's additional stiffness stands beside catenaries.
+    """
     if lines := _lines(deck, water, items):
         if terms.preload.any():
             text = "A constant force beside catenaries has no counterpart."
@@ -129,8 +132,8 @@ def _mooring(deck: DeckFiles, water: WaterColumn, terms: AddedTerms, items: list
 def _lines(deck: DeckFiles, water: WaterColumn, items: list[ConvertedItem]) -> dict[str, Any] | None:
     if (file := deck.moordyn) is None:
         return None
-    system, said = read_mooring_system(file, water.level, water.depth)
-    items += said
+    system, line_items = read_mooring_system(file, water.level, water.depth)
+    items += line_items
     where = f"{file.name}: LINES {', '.join(system.lines)}"
     try:
         section = catenary_section(system, water.depth, water.density, water.gravity)
@@ -151,13 +154,13 @@ def _forms(deck: DeckFiles, items: list[ConvertedItem]) -> dict[str, Any]:
     items.append(ConvertedItem(f"{file.name}: strips", Treatment.TAKEN, text))
     mode = "WaveDisp" if file.has("WaveDisp") else "ExctnDisp"
     moving = file.whole(mode, 0) > 0
-    place = "displaced" if moving else "mean"
-    items.append(ConvertedItem(f"{file.name}: {mode}", Treatment.TAKEN, f"`waves_at: {place}`."))
+    waves_at = "displaced" if moving else "mean"
+    items.append(ConvertedItem(f"{file.name}: {mode}", Treatment.TAKEN, f"`waves_at: {waves_at}`."))
     stretching = deck.waves.whole("WaveStMod", 0) if deck.waves is not None else 0
     wetting = "instantaneous" if stretching else "mean"
     where = f"{(deck.waves or file).name}: WaveStMod"
     items.append(ConvertedItem(where, Treatment.TAKEN, f"`wetting: {wetting}`."))
-    return {"wetting": wetting, "directions": "earth", "waves_at": place}
+    return {"wetting": wetting, "directions": "earth", "waves_at": waves_at}
 
 
 def _of_version(file: KeyedFile) -> list[ConvertedItem]:

@@ -1,4 +1,6 @@
-"""Writing of OpenFAST's binary outputs (.outb): channels as 16-bit integers, each with its own scale and offset.
+"""Writing of OpenFAST's binary outputs (.outb).
+
+Channels are 16-bit integers, each with its own scale and offset.
 
 References:
     OpenFAST v5.0.0 (2895884), NWTC_IO.f90: WrBinFAST, with FileFmtID_ChanLen_In.

@@ -7,10 +7,16 @@ from jaxtyping import Float
 
 
 class RadiationCoefficients(NamedTuple):
-    """Added mass and radiation damping about the reference point of their file, surge ... yaw: force in i, motion in j.
+    """Added mass and radiation damping about the reference point of their file.
 
-    `omega` (rad/s) increases from above 0; `added_mass` (kg, kg m, kg m2) and `damping` (N s/m, N s, N m s/rad) are of these
-    frequencies, `infinite` is the added mass at infinite frequency and `zero` at frequency zero, None where the file lacks it.
+    Motions are surge ... yaw. Entry (i, j) is the force in i by the motion in j.
+
+    Attributes:
+        omega: Frequencies (rad/s), increasing from above 0, (n,).
+        added_mass: Added mass (kg, kg m, kg m²) at these frequencies, (n, 6, 6).
+        damping: Damping (N s/m, N s, N m s/rad) at these frequencies, (n, 6, 6).
+        infinite: Added mass at infinite frequency, (6, 6); None where the file lacks it.
+        zero: Added mass at frequency 0, (6, 6); None where the file lacks it.
     """
 
     omega: Float[np.ndarray, " n"]

@@ -136,8 +136,8 @@ class _Converter:
         added = hull_member(member, headings, computed, f"{self.file}: {where}")
         self.hull.append(added)
         mass = sum(part["mass"] for part in parts)
-        what = "shell, caps and ballast are parts" if mass else "without mass"
-        self.tell(where, TAKEN, f"{name} {member.name}, {what}" + (f": {mass:.6g} kg" if mass else ""))
+        content = "shell, caps and ballast are parts" if mass else "without mass"
+        self.tell(where, TAKEN, f"{name} {member.name}, {content}" + (f": {mass:.6g} kg" if mass else ""))
         self.items += added.items
         unknown = sorted(set(member.model_extra or ()) - MESH_KEYS - MODULI)
         for key in unknown:
@@ -165,9 +165,9 @@ class _Converter:
                 self._member(nacelle, where, "nacelle under water,", False, massive=False)
             else:
                 self.tell(where, LEFT_OUT, "it is above the water, and its mass is in mRNA")
-        left = [key for key in AERODYNAMICS if key in (turbine.model_extra or {})]
-        if left:
-            self.tell(f"turbine: {', '.join(left)}", LEFT_OUT, "aerodynamics and control; the rotor is a rigid mass")
+        omitted = [key for key in AERODYNAMICS if key in (turbine.model_extra or {})]
+        if omitted:
+            self.tell(f"turbine: {', '.join(omitted)}", LEFT_OUT, "aerodynamics and control; the rotor is a rigid mass")
         if any(part["centre_of_mass"][2] < 0.0 for part in rotors):
             self.tell("turbine.blade", LEFT_OUT, "buoyancy and added mass of blades under water")
 
@@ -187,19 +187,25 @@ class _Converter:
         """Members in groups of equal coefficients, named after the first of each."""
         groups: dict[str, tuple[bool, dict[str, float]]] = {}
         members = []
-        for one in self.hull:
-            same = (one.column, one.coefficients)
-            group = next((name for name, row in groups.items() if row == same), one.entry["name"])
+        for converted in self.hull:
+            same = (converted.column, converted.coefficients)
+            group = next((name for name, row in groups.items() if row == same), converted.entry["name"])
             groups.setdefault(group, same)
-            members.append({"name": one.entry["name"], **({"group": group} if group != one.entry["name"] else {}), **one.entry})
+            members.append(
+                {
+                    "name": converted.entry["name"],
+                    **({"group": group} if group != converted.entry["name"] else {}),
+                    **converted.entry,
+                }
+            )
         if len(groups) < len(members):
             self.tell(
                 "platform.members", TAKEN, "members with the same coefficients share a group, named after the first of them"
             )
-        found: dict[str, Any] = {"members": members, "coefficients": {name: row for name, (_, row) in groups.items()}}
+        entries: dict[str, Any] = {"members": members, "coefficients": {name: row for name, (_, row) in groups.items()}}
         if any(member["shape"] == "rect" for member in members):
-            found["drag_speed"] = "component"
-        return found
+            entries["drag_speed"] = "component"
+        return entries
 
     def _mooring(self) -> dict[str, Any]:
         section, site = self.design.mooring, self.design.site
@@ -209,12 +215,12 @@ class _Converter:
             return {}
         system = self.mooring.system(site.water_depth, site.rho_water)
         try:
-            found = catenary_section(system, site.water_depth, site.rho_water, site.g)
+            catenaries = catenary_section(system, site.water_depth, site.rho_water, site.g)
         except NoCatenaries as error:
             self.tell("mooring", LEFT_OUT, f"nothing holds the platform: {error}", warning=True)
             return {}
-        self.tell("mooring", TAKEN, f"{len(found['lines'])} elastic catenaries in static balance, as MoorPy has them")
-        return {"mooring": found}
+        self.tell("mooring", TAKEN, f"{len(catenaries['lines'])} elastic catenaries in static balance, as MoorPy has them")
+        return {"mooring": catenaries}
 
     def _rest(self) -> None:
         platform, design = self.design.platform, self.design
@@ -224,7 +230,9 @@ class _Converter:
         for key in sorted(set(platform.model_extra or ()) - MESH_KEYS):
             self.tell(f"platform.{key}", LEFT_OUT, "an option of RAFT's computation")
         for key in sorted(set(design.model_extra or ()) - WITHOUT_MEANING):
-            known = key in RUN_KEYS
+            is_run_key = key in RUN_KEYS
             self.tell(
-                key, LEFT_OUT, "not the platform: a run of RAFT, or a farm" if known else "no part of a design that is read"
+                key,
+                LEFT_OUT,
+                "not the platform: a run of RAFT, or a farm" if is_run_key else "no part of a design that is read",
             )

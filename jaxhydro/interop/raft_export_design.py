@@ -54,7 +54,7 @@ CASES = {  # an example, which RAFT needs for a run
 
 @dataclass
 class _Added:
-    """What a design has beside members and mass.
+    """Loads and lines of a design, beside members and mass.
 
     Attributes:
         load: Constant load at the reference point, N, N m, (6,).
@@ -89,10 +89,12 @@ def export_design(source: ExportSource) -> ExportedModel:
     platform: dict[str, Any] = {"potModMaster": 1, "dlsMax": tidy(STRIP * float(source.model.size))}
     second = [load for load in source.model.loads if isinstance(load, SlenderBodyForces) and float(load.share)]
     if second:
-        platform |= {"potSecOrder": 1} | {key: tidy(at / float(source.model.pace)) for key, at in SECOND_ORDER_BAND.items()}
+        platform |= {"potSecOrder": 1} | {
+            key: tidy(frequency / float(source.model.pace)) for key, frequency in SECOND_ORDER_BAND.items()
+        }
         share = float(second[0].share)
-        what = "" if share == 1.0 else f", a whole share in place of {share:.3g}"
-        text = f"potSecOrder 1{what}. RAFT has the difference frequencies, and leaves out the waves' own rho u^2/2 on ends."
+        addition = "" if share == 1.0 else f", a whole share in place of {share:.3g}"
+        text = f"potSecOrder 1{addition}. RAFT has the difference frequencies, and leaves out the waves' own rho u^2/2 on ends."
         added.items.append(ConvertedItem("second_order_forces", APPROXIMATED, text))
     if added.yaw_stiffness:
         platform["yaw_stiffness"] = tidy(added.yaw_stiffness)
@@ -107,20 +109,20 @@ def export_design(source: ExportSource) -> ExportedModel:
     if added.mooring is not None:
         design["mooring"] = added.mooring
     items = [*_taken(source, inertia["mass"]), *notes.items(), *added.items, *_conventions(source)]
-    left = effects_left_out(source, WRITTEN, "The design")
-    return ExportedModel({DESIGN: yaml_text(design)}, (*items, *_drag_laws(source), *left))
+    omitted = effects_left_out(source, WRITTEN, "The design")
+    return ExportedModel({DESIGN: yaml_text(design)}, (*items, *_drag_laws(source), *omitted))
 
 
 def _point_inertia(source: ExportSource) -> dict[str, Any]:
     """The rigid body: its inertia about its centre, in RAFT's order."""
     body = source.model.body
     inertia = np.asarray(body.inertia, float)
-    places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    entries = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     return {
         "type": "point_inertia",
         "location": [tidy(value) for value in np.asarray(body.centre, float)],
         "mass": tidy(float(body.mass)),
-        "moments_of_inertia": [tidy(inertia[place]) for place in places],
+        "moments_of_inertia": [tidy(inertia[index]) for index in entries],
     }
 
 

@@ -1,6 +1,7 @@
-"""Members of a RAFT design from those of a platform: the counterpart of `raft_hull`, which has the table of coefficients.
+"""Members of a RAFT design from those of a platform.
 
-Sizes, stations and coefficients are the platform's; shells have no thickness, so that members have no mass.
+The counterpart of `raft_hull`, which has the table of coefficients. Sizes, stations and coefficients are the platform's.
+Shells have no thickness, so that members have no mass.
 
 References:
     RAFT at e6cb69e, raft_member.py: __init__ (stations, headings, no end at z = 0), setPosition (p1, p2),
@@ -54,9 +55,9 @@ def raft_members(source: ExportSource, notes: RaftNotes) -> list[dict[str, Any]]
     entries: list[dict[str, Any]] = []
     for copies in _declared(source):
         entry = _geometry(copies, notes)
-        names = [one["name"] for one in entries]
+        names = [earlier["name"] for earlier in entries]
         if (name := entry["name"]) in names:
-            entry["name"] = next(other for i in range(2, len(names) + 3) if (other := f"{name} {i}") not in names)
+            entry["name"] = next(numbered for i in range(2, len(names) + 3) if (numbered := f"{name} {i}") not in names)
         entry |= _coefficients(source, copies, entry, notes)
         if copies.member.diffracts and source.model.conventions.diffraction != "none":
             entry["MCF"] = True
@@ -67,7 +68,7 @@ def raft_members(source: ExportSource, notes: RaftNotes) -> list[dict[str, Any]]
 
 def _declared(source: ExportSource) -> Iterator[_Copies]:
     ends, first = source.model.hull.ends, 0
-    area, facing, radius, volume = (np.asarray(one, float) for one in (ends.area, ends.facing, ends.radius, ends.volume))
+    area, facing, radius, volume = (np.asarray(values, float) for values in (ends.area, ends.facing, ends.radius, ends.volume))
     for headings in source.headings:
         rows = slice(2 * first, 2 * first + 2)
         whole = np.stack([area[rows], 2 / 3 * math.pi * radius[rows] ** 3])
@@ -111,25 +112,25 @@ def _coefficients(source: ExportSource, copies: _Copies, entry: dict[str, Any], 
     if not member.column:
         pairs = {symbol: (values[f"{symbol}_z"], values[f"{symbol}_t"]) for symbol in ("Ca", "Cd")}
         equal = {symbol: first == second for symbol, (first, second) in pairs.items()}
-        found: dict[str, Any] = {
+        coefficients: dict[str, Any] = {
             symbol: pairs[symbol][0] if equal[symbol] else [list(pairs[symbol]) for _ in range(count)] for symbol in pairs
         }
-        return found | {"CaEnd": 0.0, "CdEnd": 0.0}
-    found = {"Ca": values["Ca_t"], "Cd": values["Cd_t"]}
+        return coefficients | {"CaEnd": 0.0, "CdEnd": 0.0}
+    coefficients = {"Ca": values["Ca_t"], "Cd": values["Cd_t"]}
     sides = RaftMember.model_validate(entry).sizes()
     if not member.circular and _upright(member) and np.ptp(sides, axis=1).any():
         # RAFT multiplies the coefficient along a side of an upright box by that side, not by the one across the flow
         ratio = sides[:, 1] / sides[:, 0]
-        found["Cd"] = [_row(values["Cd_t"] * np.array([one, 1 / one])) for one in ratio]
+        coefficients["Cd"] = [_row(values["Cd_t"] * np.array([side_ratio, 1 / side_ratio])) for side_ratio in ratio]
         notes.drag_of_boxes(entry["name"])
     free = copies.free[:, ::-1] if _reversed(member) else copies.free
     volume = values["Ca_z"] / (1.0 if member.circular else end_volume_ratio(RaftMember.model_validate(entry)))
     if not member.circular and volume:
         notes.end_volumes(entry["name"])
-    found |= {"CaEnd": _at_ends(tidy(volume), free[1], count), "CdEnd": _at_ends(values["Cd_z"], free[0], count)}
+    coefficients |= {"CaEnd": _at_ends(tidy(volume), free[1], count), "CdEnd": _at_ends(values["Cd_z"], free[0], count)}
     if (free < 1.0).any() and (values["Ca_z"] or values["Cd_z"]):
         notes.covered_ends(entry["name"])
-    return found
+    return coefficients
 
 
 def _at_ends(value: float, free: Float[np.ndarray, "2"], count: int) -> float | list[float]:
@@ -141,10 +142,10 @@ def _at_ends(value: float, free: Float[np.ndarray, "2"], count: int) -> float | 
 
 def _merged(stations: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
     """Stations (fractions of the length) with both sides of a step in size at one place."""
-    found = stations.copy()
+    merged = stations.copy()
     for i in np.flatnonzero(np.diff(stations) < STEP):
-        found[i : i + 2] = 0.5 * (stations[i] + stations[i + 1])
-    return found
+        merged[i : i + 2] = 0.5 * (stations[i] + stations[i + 1])
+    return merged
 
 
 def _above_waterplane(end: Float[np.ndarray, "3"], member: Member, notes: RaftNotes) -> Float[np.ndarray, "3"]:

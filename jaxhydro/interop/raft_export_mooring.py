@@ -44,7 +44,9 @@ def catenary_mooring(source: ExportSource, load: CatenaryLines) -> tuple[dict[st
 
 
 def spring_mooring(source: ExportSource, load: MooringLines) -> tuple[dict[str, Any] | None, list[ConvertedItem]]:
-    """Section `mooring` of straight springs, as elastic lines of next to no weight, and what became of them.
+    """Section `mooring` of straight springs, and what became of them.
+
+    Springs are written as elastic lines of next to no weight.
 
     Args:
         source: The platform.
@@ -66,9 +68,9 @@ def spring_mooring(source: ExportSource, load: MooringLines) -> tuple[dict[str, 
             continue
         axial = stiffness * length
         types[name] = LineType(name, 0.0, LIGHT * axial / (MOORPY_GRAVITY * length), axial)
-        for end, attachment, place in (("anchor", Attachment.GROUND, anchor), ("fairlead", Attachment.PLATFORM, fairlead)):
-            at = (float(place[0]), float(place[1]), float(place[2]))
-            points[f"{end}{i}"] = MooringPoint(f"{end}{i}", attachment, at)
+        for end, attachment, point in (("anchor", Attachment.GROUND, anchor), ("fairlead", Attachment.PLATFORM, fairlead)):
+            position = (float(point[0]), float(point[1]), float(point[2]))
+            points[f"{end}{i}"] = MooringPoint(f"{end}{i}", attachment, position)
         lines[name] = MooringLine(name, (f"anchor{i}", f"fairlead{i}"), length, name)
     if not lines:
         return None, items
@@ -83,21 +85,27 @@ def spring_mooring(source: ExportSource, load: MooringLines) -> tuple[dict[str, 
 def _section(source: ExportSource, system: MooringSystem) -> dict[str, Any]:
     """Entries as MoorPy reads them: m, kg/m, N."""
     points = [
-        {"name": one.name, "type": WORDS[one.attachment], "location": [tidy(value) for value in one.position]}
-        for one in system.points.values()
+        {"name": point.name, "type": WORDS[point.attachment], "location": [tidy(value) for value in point.position]}
+        for point in system.points.values()
     ]
     lines = [
-        {"name": one.name, "endA": one.ends[0], "endB": one.ends[1], "type": one.line_type, "length": tidy(one.length)}
-        for one in system.lines.values()
+        {
+            "name": line.name,
+            "endA": line.ends[0],
+            "endB": line.ends[1],
+            "type": line.line_type,
+            "length": tidy(line.length),
+        }
+        for line in system.lines.values()
     ]
     types = [
         {
-            "name": one.name,
-            "diameter": tidy(one.diameter),
-            "mass_density": tidy(one.mass_per_length),
-            "stiffness": tidy(one.axial_stiffness),
+            "name": line_type.name,
+            "diameter": tidy(line_type.diameter),
+            "mass_density": tidy(line_type.mass_per_length),
+            "stiffness": tidy(line_type.axial_stiffness),
         }
-        for one in system.line_types.values()
+        for line_type in system.line_types.values()
     ]
     density = tidy(float(source.model.environment.density))
     return {"water_depth": tidy(system.depth), "rho": density, "points": points, "lines": lines, "line_types": types}

@@ -1,4 +1,4 @@
-"""What is said about members of a platform that are written for RAFT."""
+"""Notes on members of a platform that are written for RAFT."""
 
 from collections.abc import Iterator
 
@@ -14,24 +14,24 @@ class RaftNotes:
         """Begin without any."""
         self._names: dict[tuple[str, Treatment, str, bool], list[str]] = {}
 
-    def add(self, name: str, what: str, treatment: Treatment, meaning: str, warning: bool = False) -> None:
+    def add(self, name: str, keys: str, treatment: Treatment, meaning: str, warning: bool = False) -> None:
         """Say something about a member.
 
         Args:
             name: Its name.
-            what: Keys that it is about.
+            keys: Keys that it is about.
             treatment: What became of them.
             meaning: The sentence.
             warning: As in `ConvertedItem`.
         """
-        names = self._names.setdefault((what, treatment, meaning, warning), [])
+        names = self._names.setdefault((keys, treatment, meaning, warning), [])
         if name not in names:
             names.append(name)
 
     def items(self) -> Iterator[ConvertedItem]:
         """The sentences as items, in the order in which they came."""
-        for (what, treatment, meaning, warning), names in self._names.items():
-            yield ConvertedItem(f"{what}, {', '.join(names)}", treatment, meaning, warning)
+        for (keys, treatment, meaning, warning), names in self._names.items():
+            yield ConvertedItem(f"{keys}, {', '.join(names)}", treatment, meaning, warning)
 
     def diffraction(self, convention: str, name: str) -> None:
         """MacCamy and Fuchs' diffraction, by the convention of the model."""

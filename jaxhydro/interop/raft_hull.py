@@ -94,7 +94,7 @@ def hull_member(member: RaftMember, headings: list[float], computed: bool, where
 
 
 def _transverse(member: RaftMember, column: bool, approximated: Any) -> dict[str, float]:
-    found: dict[str, float] = {}
+    coefficients: dict[str, float] = {}
     for key, power in (("Ca", 2), ("Cd", 1)):
         value = getattr(member, key)
         if np.ndim(value) == 1 and len(value) > 2:
@@ -118,16 +118,19 @@ def _transverse(member: RaftMember, column: bool, approximated: Any) -> dict[str
             means.append(mean)
         first, second = means
         if not column:
-            found |= {f"{key}_t": second, f"{key}_z": first}
+            coefficients |= {f"{key}_t": second, f"{key}_z": first}
             continue
         if abs(first - second) > EQUAL * max(first, second):
             approximated(key, f"a column has one {key}_t for both directions: the mean of {first:.4g} and {second:.4g}")
-        found[f"{key}_t"] = 0.5 * (first + second)
-    return found
+        coefficients[f"{key}_t"] = 0.5 * (first + second)
+    return coefficients
 
 
 def _refers_to_other_side(member: RaftMember) -> bool:
-    """Whether RAFT's drag refers to the other side than the platform file's: that of an upright box with unequal sides."""
+    """Whether RAFT's drag refers to the other side than the platform file's drag does.
+
+    It does so for an upright box with unequal sides.
+    """
     upright = abs(member.rB[2] - member.rA[2]) > (1 - 1e-9) * member.length
     return upright and not member.circular and bool(np.ptp(member.sizes(), axis=1).any())
 
@@ -136,32 +139,36 @@ def _mean_over_wet_length(member: RaftMember, values: np.ndarray, power: int) ->
     """Mean of a coefficient over the wet length, weighted by a power of the size; and whether it varies."""
     if np.ptp(values) <= EQUAL * np.abs(values).max():
         return float(values[0]), False
-    at = member.along(member.stations)
+    distances = member.along(member.stations)
     fraction = np.linspace(0.0, member.length, 2001)
     middle = 0.5 * (fraction[1:] + fraction[:-1])
     z = member.rA[2] + (member.rB[2] - member.rA[2]) * middle / member.length
-    size = np.interp(middle, at, np.sqrt(member.sizes().prod(axis=1))) ** power
+    size = np.interp(middle, distances, np.sqrt(member.sizes().prod(axis=1))) ** power
     weight = np.where(z < 0.0, size, 0.0)
     weight = weight if weight.any() else size
-    return float((np.interp(middle, at, values) * weight).sum() / weight.sum()), True
+    return float((np.interp(middle, distances, values) * weight).sum() / weight.sum()), True
 
 
 def _axial(member: RaftMember, approximated: Any) -> dict[str, float]:
-    """Ca_z and Cd_z of a column: RAFT's added mass and drag of its wet ends and rings, over the platform file's references."""
+    """Ca_z and Cd_z of a column.
+
+    They are RAFT's added mass and drag of the column's wet ends and rings, over the platform file's references.
+    """
     rows = list(_faces(member))
     wet = [row for row in rows if row[0] < 0.0] or rows
-    found = {}
+    coefficients = {}
     for name, key, theirs, ours in (("Ca_z", "CaEnd", 1, 2), ("Cd_z", "CdEnd", 3, 3)):
         values = np.array([np.interp(row[4], *_increasing(member, key)) for row in wet])
         reference = sum(row[ours] for row in wet)
         if np.ptp(values) > EQUAL * max(values.max(), 1e-300):
             approximated(key, "one value for all ends and rings of the column, their mean")
-        found[name] = float(sum(value * row[theirs] for value, row in zip(values, wet)) / reference)
-    if not member.circular and found["Ca_z"]:
+        coefficients[name] = float(sum(value * row[theirs] for value, row in zip(values, wet)) / reference)
+    if not member.circular and coefficients["Ca_z"]:
         approximated(
-            "CaEnd", f"Ca_z {found['Ca_z']:.4g}: RAFT refers it to a sphere on the mean side, here on the circle of equal area"
+            "CaEnd",
+            f"Ca_z {coefficients['Ca_z']:.4g}: RAFT refers it to a sphere on the mean side, here on the circle of equal area",
         )
-    return found
+    return coefficients
 
 
 def end_volume_ratio(member: RaftMember) -> float:
@@ -176,17 +183,21 @@ def _increasing(member: RaftMember, key: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _faces(member: RaftMember) -> Iterator[tuple[float, float, float, float, float]]:
-    """Ends and rings: z (m), RAFT's and the platform file's reference volume (m³), area (m²), distance from rA (m)."""
-    at, sizes = member.along(member.stations), member.sizes()
+    """Ends and rings of a member.
+
+    Yields:
+        z (m), RAFT's and the platform file's reference volume (m³), area (m²), and distance from rA (m).
+    """
+    distances, sizes = member.along(member.stations), member.sizes()
     theirs = math.pi / 12 * sizes.mean(axis=1) ** 3
     area = sizes.prod(axis=1) * (math.pi / 4 if member.circular else 1.0)
     ours = 2 / 3 * math.pi * (area / math.pi) ** 1.5
     slope = (member.rB[2] - member.rA[2]) / member.length
-    for i in (0, len(at) - 1):
-        yield member.rA[2] + slope * at[i], theirs[i], ours[i], area[i], at[i]
-    for i, j in pairwise(range(len(at))):
+    for i in (0, len(distances) - 1):
+        yield member.rA[2] + slope * distances[i], theirs[i], ours[i], area[i], distances[i]
+    for i, j in pairwise(range(len(distances))):
         if ours[i] != ours[j]:
-            middle = 0.5 * (at[i] + at[j])
+            middle = 0.5 * (distances[i] + distances[j])
             yield (
                 member.rA[2] + slope * middle,
                 abs(theirs[j] - theirs[i]),

@@ -1,4 +1,7 @@
-"""Masses of a RAFT design: shell, caps and ballast of each member, rotors with nacelles, and point masses."""
+"""Masses of a RAFT design: members, rotors with nacelles, and point masses.
+
+The mass of a member is that of its shell, caps and ballast.
+"""
 
 import math
 from collections.abc import Iterator
@@ -29,30 +32,38 @@ def moments_of(member: RaftMember) -> Moments:
     Returns:
         Moments in the member's axes: kg, kg m, kg m².
     """
-    at, outer = member.along(member.stations), member.sizes()
+    distances, outer = member.along(member.stations), member.sizes()
     inner = outer - 2 * member.per_station("t")[:, None]
     fills, densities = member.per_section("l_fill") / (member.stations[-1] - member.stations[0]), member.per_section("rho_fill")
     total = Moments()
-    for i in range(len(at) - 1):
-        if (length := float(at[i + 1] - at[i])) == 0.0:
+    for i in range(len(distances) - 1):
+        if (length := float(distances[i + 1] - distances[i])) == 0.0:
             continue
         shell = hollow_frustum(outer[i], outer[i + 1], inner[i], inner[i + 1], length, member.circular)
-        total += shell.times(member.rho_shell).shifted(float(at[i]))
+        total += shell.times(member.rho_shell).shifted(float(distances[i]))
         if (fill := float(fills[i]) * member.length) > 0.0:
             top = inner[i] + (inner[i + 1] - inner[i]) * min(fill / length, 1.0)
             ballast = solid_frustum(inner[i], top, fill, member.circular)
-            total += ballast.times(float(densities[i])).shifted(float(at[i]))
-    for cap in _caps(member, at, inner):
+            total += ballast.times(float(densities[i])).shifted(float(distances[i]))
+    for cap in _caps(member, distances, inner):
         total += cap.times(member.rho_shell)
     return total
 
 
-def _caps(member: RaftMember, at: np.ndarray, inner: np.ndarray) -> Iterator[Moments]:
-    """Volume and moments of each cap; a hole keeps its share of the inner size through the cap's thickness."""
+def _caps(member: RaftMember, distances: np.ndarray, inner: np.ndarray) -> Iterator[Moments]:
+    """Volume and moments of each cap.
+
+    A hole keeps its share of the inner size through the cap's thickness.
+
+    Args:
+        member: The member.
+        distances: Distances of its stations from rA (m), (n,).
+        inner: Inner sizes (m) at the stations, (n, 2).
+    """
 
     def inner_size(position: float, side: float) -> np.ndarray:
-        place = position + side * SIDE * member.length
-        return np.array([np.interp(place, at, inner[:, k]) for k in (0, 1)])
+        beside = position + side * SIDE * member.length
+        return np.array([np.interp(beside, distances, inner[:, k]) for k in (0, 1)])
 
     thickness = member.cap_thicknesses()
     for i, (station, hole) in enumerate(zip(member.along(member.cap_stations), member.holes())):
@@ -75,8 +86,8 @@ def member_axes(member: RaftMember) -> Matrix3:
     """Unit vectors, as columns, along the first and the second size and from rA to rB.
 
     They are those of the platform file's member with the same keys: see `twist`. RAFT's inertia of a level box has its two
-    sides exchanged (raft_member.py at e6cb69e: getInertia has the first side along p1, calcHydroLinearization and plot along
-    p2). Here the first side is horizontal, as it is in RAFT's drag and drawings.
+    sides exchanged (raft_member.py at e6cb69e). Its getInertia has the first side along p1, calcHydroLinearization and plot
+    along p2. Here the first side is horizontal, as it is in RAFT's drag and drawings.
     """
     a, b = np.array(member.rA), np.array(member.rB)
     stations, sizes = member.along(member.stations) / member.length, member.sizes()
@@ -85,7 +96,10 @@ def member_axes(member: RaftMember) -> Matrix3:
 
 
 def twist(member: RaftMember) -> float:
-    """The platform file's gamma (deg) of a member: RAFT's, with the other sign where a column runs from top to bottom."""
+    """Gamma (deg) of a member in the platform file.
+
+    It is RAFT's, with the other sign where a column runs from top to bottom; 0 for a circle.
+    """
     down = (member.rA[2] - member.rB[2]) / member.length
     return 0.0 if member.circular else -member.gamma if down > math.sqrt(0.5) else member.gamma
 
@@ -94,7 +108,7 @@ def part(name: str, mass: float, centre: np.ndarray, inertia: Matrix3) -> dict[s
     """A part of the platform file's rigid body: kg, m, kg m² about its centre."""
     entries = {"Ixx": (0, 0), "Iyy": (1, 1), "Izz": (2, 2), "Ixy": (0, 1), "Ixz": (0, 2), "Iyz": (1, 2)}
     size = float(np.abs(np.diag(inertia)).max())
-    values = {key: float(inertia[at]) for key, at in entries.items()}
+    values = {key: float(inertia[index]) for key, index in entries.items()}
     values = {key: value for key, value in values.items() if key[1] == key[2] or abs(value) > 1e-12 * size}
     return {"name": name, "mass": mass, "centre_of_mass": [round(float(x), 9) for x in centre], "inertia": values}
 
@@ -141,7 +155,10 @@ def rotor_parts(turbine: Turbine) -> list[dict[str, Any]]:
 
 
 def effect_part(effect: Effect, number: int) -> dict[str, Any]:
-    """The part of a point inertia; its off-diagonal entries stand in the matrix as they are (RAFT, raft_fowt.py)."""
+    """Part of the platform file's rigid body from a point inertia.
+
+    Its off-diagonal entries stand in the matrix as they are (RAFT, raft_fowt.py).
+    """
     xx, yy, zz, xy, xz, yz = effect.moments_of_inertia
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     return part(f"point inertia {number}", effect.mass, np.array(effect.location), inertia)

@@ -108,7 +108,10 @@ class RaftMember(Consistent):
         return np.broadcast_to(sizes, (len(self.stations), 2))
 
     def cap_thicknesses(self) -> Float[np.ndarray, " c"]:
-        """The thickness (m) of each cap; without `cap_stations` there is none, whatever `cap_t` says, as in RAFT."""
+        """Thickness (m) of each cap.
+
+        Without `cap_stations` there is none, whatever `cap_t` says, as in RAFT.
+        """
         return np.broadcast_to(np.array(self.cap_t, float), (len(self.cap_stations),)) if self.cap_stations else np.zeros(0)
 
     def holes(self) -> Float[np.ndarray, "c 2"]:
@@ -148,14 +151,14 @@ class RaftMember(Consistent):
 
     def _lengths(self, n: int) -> Iterator[Problem]:
         caps = len(self.cap_stations)
-        for key, count, what in (
+        for key, count, noun in (
             *((key, n, "stations") for key in ("t", "CaEnd", "CdEnd", "Ca_q", "Cd_q")),
             *((key, n - 1, "sections between stations") for key in ("l_fill", "rho_fill")),
             ("cap_t", caps, "cap_stations"),
         ):
             value = getattr(self, key)
             if isinstance(value, tuple) and len(value) != count and (caps or key != "cap_t"):
-                yield Problem(key, f"a number, or {count} numbers for {count} {what}", f"{len(value)} numbers")
+                yield Problem(key, f"a number, or {count} numbers for {count} {noun}", f"{len(value)} numbers")
         for key in ("Ca", "Cd"):
             value = getattr(self, key)
             if isinstance(value, tuple) and len(value) not in ((n,) if _form(value) == "pairs" else (2, n)):
@@ -163,11 +166,17 @@ class RaftMember(Consistent):
         for key, count in (("d", n), ("cap_d_in", caps)):
             value = getattr(self, key)
             if not self._of_a_section(value, count, key == "d") and (key == "d" or caps):
-                one = "a diameter" if self.circular else "two sides"
-                yield Problem(key, f"{one}, or {count} of these in a list", shown(value))
+                unit = "a diameter" if self.circular else "two sides"
+                yield Problem(key, f"{unit}, or {count} of these in a list", shown(value))
 
     def _of_a_section(self, value: Any, count: int, sides: bool) -> bool:
-        """Whether a value is one size of the section, or `count` of them; `sides`: a rectangle has two, not one."""
+        """Whether a value is one size of the section, or a list of them.
+
+        Args:
+            value: The value.
+            count: Number of sizes in a list.
+            sides: Whether a rectangle has two sizes, not one.
+        """
         form = _form(value)
         if form == "one":
             return self.circular or not sides
@@ -203,9 +212,9 @@ def cap_extent(member: RaftMember, index: int, thickness: float) -> tuple[float,
     has its station in the middle (RAFT at e6cb69e, raft_member.py, getInertia).
     """
     stations = member.cap_stations
-    at, same = float(member.along(stations[index])), stations[index]
+    position, same = float(member.along(stations[index])), stations[index]
     if same == member.stations[0] or (index > 0 and stations[index - 1] == same and same != member.stations[-1]):
-        return at, at + thickness
+        return position, position + thickness
     if same == member.stations[-1] or (index + 1 < len(stations) and stations[index + 1] == same):
-        return at - thickness, at
-    return at - thickness / 2, at + thickness / 2
+        return position - thickness, position
+    return position - thickness / 2, position + thickness / 2

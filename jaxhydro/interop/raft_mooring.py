@@ -73,10 +73,10 @@ class MooringSection(Consistent):
     def _faults(self) -> Iterator[Problem]:
         points, types = [point.name for point in self.points], [kind.name for kind in self.line_types]
         for i, line in enumerate(self.lines):
-            for key, known, what in (("endA", points, "point"), ("endB", points, "point"), ("type", types, "line type")):
-                if (value := getattr(line, key)) not in known:
-                    expected = f"the name of a {what} ({', '.join(known)})"
-                    yield Problem(f"lines[{i}].{key}", expected, shown(value), suggest(value, known))
+            for key, names, noun in (("endA", points, "point"), ("endB", points, "point"), ("type", types, "line type")):
+                if (value := getattr(line, key)) not in names:
+                    expected = f"the name of a {noun} ({', '.join(names)})"
+                    yield Problem(f"lines[{i}].{key}", expected, shown(value), suggest(value, names))
             if line.endA == line.endB:
                 yield Problem(f"lines[{i}].endB", "a point that is not endA", shown(line.endB))
 

@@ -61,11 +61,11 @@ class Damping(NamedTuple):
         from scipy.interpolate import CubicSpline
 
         last = coefficients.omega[-1]
-        known = np.concatenate([-coefficients.omega[::-1], [0.0], coefficients.omega])
+        nodes = np.concatenate([-coefficients.omega[::-1], [0.0], coefficients.omega])
         symmetric = 0.5 * (coefficients.damping + coefficients.damping.transpose(0, 2, 1))
         even = np.concatenate([symmetric[::-1], np.zeros((1, 6, 6)), symmetric])
-        omega = np.arange(0.0, TAIL_END * last, float(np.diff(known).min()) / STEPS_PER_INTERVAL)
-        inside = CubicSpline(known, even)(np.minimum(omega, last))
+        omega = np.arange(0.0, TAIL_END * last, float(np.diff(nodes).min()) / STEPS_PER_INTERVAL)
+        inside = CubicSpline(nodes, even)(np.minimum(omega, last))
         return cls(omega, inside * (last / np.maximum(omega, last))[:, None, None] ** TAIL_POWER)
 
     def kernel(self, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 6 6"]:
@@ -84,22 +84,34 @@ class Damping(NamedTuple):
 
 
 def realise(coefficients: RadiationCoefficients, tolerance: float = 0.01, order: int = 40) -> Realisation:
-    """The state space of least order whose step response differs from the computed one by less than `tolerance`; where none of
-    up to `order` states does, the nearest of them: see `Realisation.misfit`.
+    """State space of least order whose step response follows the computed one within `tolerance`.
 
-    The retardation function is K(t) = 2/pi int_0^inf B(omega) cos(omega t) d omega (Cummins 1962, Schiffstechnik 9, 101-109;
-    Ogilvie 1964, 5th Symposium on Naval Hydrodynamics). Its integral, the step response, of all 36 pairs at once becomes
-    C exp(A t) B by the eigenvalues of its Hankel matrix (Ho and Kalman 1966, Regelungstechnik 14, 545-548; Kung 1978, 12th
-    Asilomar Conference; for radiation Kristiansen, Hjulstad and Egeland 2005, Ocean Engineering 32, 2195-2216): the
-    logarithms of the discrete poles are the continuous ones. C is fitted anew under C B = 0, as nothing acts at once. The
-    kernel's state space is then A, B, C A: without damping at frequency 0, without force on what rests, K(0) finite (the
-    properties of Perez and Fossen 2008, Modeling, Identification and Control 29, 1-19). The step response rather than K is
-    followed because it weighs an error in force by 1/omega, as added mass does: slow motion, where a platform resonates, is
-    met best, and what is too fast for a simulation's step counts least. Poles that grow are never taken, nor a state space
-    whose damping goes below zero by more than `MAX_NEGATIVE_DAMPING` of the largest.
+    Where none of up to `order` states does, it is the nearest of them: see `Realisation.misfit`.
 
-    Only damping is used: A(omega) of the file is left for a check. Raises ValueError where there is no damping, or no such
-    state space.
+    The retardation function is K(t) = 2/pi int_0^inf B(omega) cos(omega t) d omega. Its integral is the step response. That of
+    all 36 pairs at once becomes C exp(A t) B, by the eigenvalues of its Hankel matrix. The logarithms of the discrete poles are
+    the continuous ones. C is fitted anew under C B = 0, as nothing acts at once. The kernel's state space is then A, B, C A. It
+    is without damping at frequency 0 and without force on what rests, and K(0) is finite.
+
+    The step response rather than K is followed because it weighs an error in force by 1/omega, as added mass does. Slow motion,
+    where a platform resonates, is met best. What is too fast for a simulation's step counts least.
+
+    Poles that grow are never taken. Nor is a state space whose damping goes below zero by more than `MAX_NEGATIVE_DAMPING` of
+    the largest. Only damping is used: A(omega) of the file is left for a check.
+
+    Args:
+        coefficients: Radiation coefficients.
+        tolerance: Misfit below which a state space is taken.
+        order: Largest number of states.
+
+    Raises:
+        ValueError: There is no damping, or no such state space.
+
+    References:
+        Cummins (1962), Schiffstechnik 9, 101-109; Ogilvie (1964), 5th Symposium on Naval Hydrodynamics: retardation function.
+        Ho and Kalman (1966), Regelungstechnik 14, 545-548; Kung (1978), 12th Asilomar Conference: Hankel matrix.
+        Kristiansen, Hjulstad and Egeland (2005), Ocean Engineering 32, 2195-2216: the same for radiation.
+        Perez and Fossen (2008), Modeling, Identification and Control 29, 1-19: properties of the kernel.
     """
     damping = Damping.of(coefficients)
     fine = (damping.damping[1:] / damping.omega[1:, None, None]).diagonal(axis1=1, axis2=2) ** 2
@@ -142,10 +154,10 @@ class _Hankel:
         values, vectors = [], []
         for group in _groups(np.sqrt((response**2).mean(axis=0)) > MIN_COUPLING):
             blocks = response[:, group[:, None], group][np.add.outer(np.arange(half), np.arange(half))]
-            found, mine = np.linalg.eigh(blocks.transpose(0, 2, 1, 3).reshape(half * group.size, -1))
-            whole = np.zeros((half, self.motions, len(found)))
-            whole[:, group] = mine.reshape(half, group.size, -1)
-            values.append(found)
+            eigenvalues, eigenvectors = np.linalg.eigh(blocks.transpose(0, 2, 1, 3).reshape(half * group.size, -1))
+            whole = np.zeros((half, self.motions, len(eigenvalues)))
+            whole[:, group] = eigenvectors.reshape(half, group.size, -1)
+            values.append(eigenvalues)
             vectors.append(whole.reshape(half * self.motions, -1))
         every = np.concatenate(values)
         falling = np.argsort(-np.abs(every))
@@ -160,8 +172,8 @@ class _Hankel:
         poles, modes = np.linalg.eig(shift)
         drive = (np.sign(self.values[:order]) * size * vectors)[: self.motions].T
         driven = np.linalg.solve(modes, drive.astype(complex))
-        kept = (np.abs(poles) < 1) & (poles.imag >= 0) & ((poles.imag > 0) | (poles.real > 0))
-        rate, driven = np.log(poles[kept]) / self.step, driven[kept]
+        selected = (np.abs(poles) < 1) & (poles.imag >= 0) & ((poles.imag > 0) | (poles.real > 0))
+        rate, driven = np.log(poles[selected]) / self.step, driven[selected]
         driven /= np.linalg.norm(driven, axis=1, keepdims=True)
         paired = np.flatnonzero(rate.imag > 0)
 
@@ -169,8 +181,8 @@ class _Hankel:
             return np.concatenate([modal.real, modal.imag[paired]])
 
         drive = real(driven)
-        left, strength, _ = np.linalg.svd(drive)
-        free = left[:, int((strength > 1e-9 * strength.max(initial=0.0)).sum()) :]
+        left_vectors, strength, _ = np.linalg.svd(drive)
+        free = left_vectors[:, int((strength > 1e-9 * strength.max(initial=0.0)).sum()) :]
         rates = np.diag(real(rate.real * (1 + 1j)))
         turned = len(rate) + np.arange(len(paired))
         rates[paired, turned], rates[turned, paired] = -rate.imag[paired], rate.imag[paired]

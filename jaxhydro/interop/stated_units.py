@@ -31,14 +31,17 @@ _AFTER = re.compile(r"(?:_|\s+in\s+|,\s*|/\s*)([A-Za-z°]+)$")
 
 
 def stated_unit(column: str, units: Mapping[str, str]) -> str | None:
-    """Return the unit that a file states for a column, as a manifest writes it; None where it states none that is known.
+    """Unit that a file states for a column, as a manifest writes it.
 
     Args:
         column: the column's name.
         units: units by column from elsewhere in the file.
+
+    Returns:
+        The unit; None where the file states none that is known.
     """
     bracketed, after = _IN_BRACKETS.search(column), _AFTER.search(column)
-    found = units.get(column) or (bracketed[1] if bracketed else after[1] if after else "")
-    word = found.strip("()[]{}<> ").lower()
+    text = units.get(column) or (bracketed[1] if bracketed else after[1] if after else "")
+    word = text.strip("()[]{}<> ").lower()
     word = _SAME.get(word.removesuffix("s") if len(word) > 2 else word, word)
     return word if word in _KNOWN else None

@@ -34,17 +34,20 @@ def table_headings(
     return _found(str(path), file.stat().st_mtime_ns if file.is_file() else 0, kind, by, body)
 
 
-def covers(known: Float[np.ndarray, " d"], heading: float) -> bool:
-    """Whether a heading (deg) lies within the headings (deg) of a table, or between them where they go round."""
-    none = np.zeros(len(known), complex)
-    return bool(HeadingInterpolation.of(np.radians(known), none).covers(math.radians(heading)))
+def covers(headings: Float[np.ndarray, " d"], heading: float) -> bool:
+    """Whether a heading (deg) lies within the headings (deg) of a table.
+
+    Where the headings go round the whole circle, all others are between them.
+    """
+    none = np.zeros(len(headings), complex)
+    return bool(HeadingInterpolation.of(np.radians(headings), none).covers(math.radians(heading)))
 
 
-def spoken(known: Float[np.ndarray, " d"]) -> str:
+def spoken(headings: Float[np.ndarray, " d"]) -> str:
     """Headings (deg) in words: all of a few, or the first and the last."""
-    if len(known) <= 4:
-        return ", ".join(f"{round(float(one), 6) + 0.0:g}" for one in known)
-    table = HeadingInterpolation.of(np.radians(known), np.zeros(len(known), complex))
+    if len(headings) <= 4:
+        return ", ".join(f"{round(float(heading), 6) + 0.0:g}" for heading in headings)
+    table = HeadingInterpolation.of(np.radians(headings), np.zeros(len(headings), complex))
     first, last = (math.degrees(float(table.heading[i])) for i in (0, -1))
     return f"{first:.6g} to {last:.6g}"
 

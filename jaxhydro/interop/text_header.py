@@ -64,25 +64,25 @@ def widths(lines: list[str], delimiter: str | None) -> list[int]:
 
 def layout(rows: list[Row]) -> Layout:
     """Layout of the table in the non-empty lines of a file, of which one at least is no comment."""
-    kept = [(number, line) for number, line in rows if not line.lstrip().startswith(COMMENTS)]
-    delimiter = _delimiter([line for _, line in kept[len(kept) // 2 :][:_SAMPLE]])
-    found = _layout(rows, kept, delimiter)
-    if delimiter is WHITESPACE and found.names is None:  # a date and a time of day under one name
+    uncommented = [(number, line) for number, line in rows if not line.lstrip().startswith(COMMENTS)]
+    delimiter = _delimiter([line for _, line in uncommented[len(uncommented) // 2 :][:_SAMPLE]])
+    table = _layout(rows, uncommented, delimiter)
+    if delimiter is WHITESPACE and table.names is None:  # a date and a time of day under one name
         stamp = re.compile(r"(\d{4}[-/]\d\d[-/]\d\d|\d{1,2}[-/.]\d{1,2}[-/.]\d{4})\s+(?=\d{1,2}:\d\d:\d\d)")
         joined = [(number, stamp.sub(r"\1T", line)) for number, line in rows]
         if joined != rows:
-            kept = [(number, line) for number, line in joined if not line.lstrip().startswith(COMMENTS)]
-            return _layout(joined, kept, delimiter)
-    return found
+            uncommented = [(number, line) for number, line in joined if not line.lstrip().startswith(COMMENTS)]
+            return _layout(joined, uncommented, delimiter)
+    return table
 
 
-def _layout(rows: list[Row], kept: list[Row], delimiter: str | None) -> Layout:
-    lines = [line for _, line in kept]
+def _layout(rows: list[Row], uncommented: list[Row], delimiter: str | None) -> Layout:
+    lines = [line for _, line in uncommented]
     width = Counter(widths(lines, delimiter)).most_common(1)[0][0]
     numeric = _numeric_columns(lines, delimiter, width)
     if not numeric:  # text alone: nothing tells header from body
         names = names_of(lines[0], delimiter, width)
-        return Layout(delimiter, names, None, kept[1:] if names else kept, None if names else lines[0])
+        return Layout(delimiter, names, None, uncommented[1:] if names else uncommented, None if names else lines[0])
 
     def measured(line: str) -> bool:
         cells = split(line, delimiter)
@@ -95,13 +95,13 @@ def _layout(rows: list[Row], kept: list[Row], delimiter: str | None) -> Layout:
         last += 1  # a damaged row, which is told
     if any(not _is_sentence(line, delimiter, numeric) for line in lines[last + 1 :]):
         last = len(lines) - 1
-    top, body = kept[:first], kept[first : last + 1]
-    at = next((i for i in reversed(range(len(top))) if names_of(top[i][1], delimiter, width)), None)
-    if at is not None:
-        names, units = names_of(top[at][1], delimiter, width) or [], None
-        between = top[at + 1 :]
-        above = names_of(top[at - 1][1], delimiter, width) if at else None
-        cells = delimiter is not WHITESPACE and all(len(split(top[i][1], delimiter)) == width for i in (at - 1, at))
+    top, body = uncommented[:first], uncommented[first : last + 1]
+    header = next((i for i in reversed(range(len(top))) if names_of(top[i][1], delimiter, width)), None)
+    if header is not None:
+        names, units = names_of(top[header][1], delimiter, width) or [], None
+        between = top[header + 1 :]
+        above = names_of(top[header - 1][1], delimiter, width) if header else None
+        cells = delimiter is not WHITESPACE and all(len(split(top[i][1], delimiter)) == width for i in (header - 1, header))
         if above and _are_units(names, cells) and sum(map(bool, above)) >= sum(map(bool, names)):
             names, units = above, names
         damaged = [row for row in between if not _is_sentence(row[1], delimiter, numeric)]
@@ -129,17 +129,17 @@ def _from_comments(
 
 def names_of(line: str, delimiter: str | None, width: int) -> list[str] | None:
     """Column names of a line, by the delimiter of the table or another; None where none fits."""
-    others = [one for one in ("\t", ";", ",") if one != delimiter and one in line]
-    ways = [split(line, one) for one in others]
-    own = split(line, delimiter)
-    ways = [*ways, own] if delimiter is WHITESPACE else [own, *ways]
+    others = [mark for mark in ("\t", ";", ",") if mark != delimiter and mark in line]
+    ways = [split(line, mark) for mark in others]
+    own_cells = split(line, delimiter)
+    ways = [*ways, own_cells] if delimiter is WHITESPACE else [own_cells, *ways]
     ways += [_WIDE.split(line.strip()), re.findall(r'"[^"]*"|\S+', line), _with_units(line.split())]
     for cells in ways:
         names = [cell.strip().strip('"') for cell in cells]
         if len(names) == width and any(names) and not any(is_number(name) for name in names):
             return names
-    short = delimiter is not WHITESPACE and width - len(own) == 1  # every row ends with the delimiter
-    return own if short and len(own) > 1 and not any(map(is_number, own)) else None
+    short = delimiter is not WHITESPACE and width - len(own_cells) == 1  # every row ends with the delimiter
+    return own_cells if short and len(own_cells) > 1 and not any(map(is_number, own_cells)) else None
 
 
 def _with_units(words: list[str]) -> list[str]:
@@ -156,8 +156,10 @@ def _with_units(words: list[str]) -> list[str]:
 def _are_units(cells: list[str], anything_short: bool) -> bool:
     """Whether the row under the names has units: bracketed or common ones, or anything short."""
     filled = [cell for cell in cells if cell]
-    known = [cell for cell in filled if _BRACKETED.fullmatch(cell) or cell.lower() in _UNIT_WORDS or not re.search(r"\w", cell)]
-    if len(known) > len(filled) / 2:
+    unit_like = [
+        cell for cell in filled if _BRACKETED.fullmatch(cell) or cell.lower() in _UNIT_WORDS or not re.search(r"\w", cell)
+    ]
+    if len(unit_like) > len(filled) / 2:
         return True
     return anything_short and bool(filled) and all(len(cell) <= 10 for cell in filled)
 

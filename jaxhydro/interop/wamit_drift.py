@@ -31,7 +31,7 @@ def read_transfer(
 ) -> Transfer:
     """Read the difference-frequency transfer function in a .12d file, for waves of one heading.
 
-    T_ij = rho g L^k F_ij, k = 1 for forces and 2 for moments, F_ij for the product of amplitudes A_i conj(A_j) at PER1 and
+    T_ij = rho g L^k F_ij, k = 1 for forces and 2 for moments. F_ij is for the product of amplitudes A_i conj(A_j) at PER1 and
     PER2. The file may have either half of the Hermitian table or both, which then have to be conjugate.
 
     Args:
@@ -99,7 +99,10 @@ def read_directional_transfer(
         omega, table = _of_rows(path, mine[(mine[:, 2:4] == mine[0, 2:4]).all(axis=1)], newman, by)
         tables.append((omega, unit * table))
     omega = tables[0][0]
-    if any(one.shape != omega.shape or not np.allclose(one, omega, rtol=FREQUENCY_TOLERANCE, atol=0) for one, _ in tables):
+    if any(
+        frequencies.shape != omega.shape or not np.allclose(frequencies, omega, rtol=FREQUENCY_TOLERANCE, atol=0)
+        for frequencies, _ in tables
+    ):
         raise InputError(str(path), [Problem("BETA1", "the same periods for all headings", "others at some")])
     return DirectionalTransfer.of(omega, np.radians(headings), [table for _, table in tables], newman)
 
@@ -129,9 +132,9 @@ def _of_rows(
         return " and ".join(f"{column[k]:.5g} {UNITS[by]}" for k in pair)
 
     if (against := _contradicting(mode, first, second, value)) is not None:
-        one, other, i, *pair = against
+        first_value, second_value, i, *pair = against
         expected = f"one value for {named(np.array(pair))}, given twice, the halves of the table conjugate"
-        raise wrong(expected, f"{one:.5g} and {other:.5g} (as (i, j) both)", DOFS[i])
+        raise wrong(expected, f"{first_value:.5g} and {second_value:.5g} (as (i, j) both)", DOFS[i])
     table = np.full((6, n, n), np.nan, complex)
     table[mode, second, first] = value.conj()
     table[mode, first, second] = value
@@ -152,24 +155,27 @@ def _of_rows(
 def _contradicting(
     mode: Int[np.ndarray, " r"], first: Int[np.ndarray, " r"], second: Int[np.ndarray, " r"], value: Complex[np.ndarray, " r"]
 ) -> tuple[complex, complex, int, int, int] | None:
-    """Two values of one pair of frequencies that differ most, by what they should be, the mode and the pair; None: all agree.
+    """The two values of one pair of frequencies that contradict each other most; None: all agree.
 
     All are taken to the half of the table in which the first index is not the larger. A value on the diagonal has to be real,
-    as it is its own conjugate.
+    as it is its own conjugate. Differences are compared as fractions of the allowed one.
+
+    Returns:
+        Both values, the mode, and the indices of the pair.
     """
     low, high = np.minimum(first, second), np.maximum(first, second)
     turned = np.where(first <= second, value, value.conj())
     worst: tuple[float, tuple[complex, complex, int, int, int] | None] = (1.0, None)
     for i in np.unique(mode):
-        of = np.flatnonzero(mode == i)
+        of_mode = np.flatnonzero(mode == i)
         # a mode that symmetry makes zero is rounding: forces and moments are each beside the largest of their kind
         largest = np.abs(value[(mode > 2) == (i > 2)]).max()
-        order = of[np.lexsort((high[of], low[of]))]
+        order = of_mode[np.lexsort((high[of_mode], low[of_mode]))]
         same = (np.diff(low[order]) == 0) & (np.diff(high[order]) == 0)
         pairs = [(turned[order[k]], turned[order[k + 1]], order[k]) for k in np.flatnonzero(same)]
-        pairs += [(turned[k], turned[k].conj(), k) for k in of[low[of] == high[of]]]
-        for one, other, k in pairs:
-            limit = MAX_ASYMMETRY * max(abs(one), abs(other)) + NEGLIGIBLE_FORCE * largest
-            if limit > 0 and (excess := abs(one - other) / limit) > worst[0]:
-                worst = (excess, (complex(one), complex(other), int(i), int(low[k]), int(high[k])))
+        pairs += [(turned[k], turned[k].conj(), k) for k in of_mode[low[of_mode] == high[of_mode]]]
+        for first_value, second_value, k in pairs:
+            limit = MAX_ASYMMETRY * max(abs(first_value), abs(second_value)) + NEGLIGIBLE_FORCE * largest
+            if limit > 0 and (excess := abs(first_value - second_value) / limit) > worst[0]:
+                worst = (excess, (complex(first_value), complex(second_value), int(i), int(low[k]), int(high[k])))
     return worst[1]

@@ -26,7 +26,7 @@ def read_excitation(
 ) -> Excitation:
     """Read the first-order excitation in a .3 file, for waves of one heading.
 
-    X_i = rho g L^m (RE + i IM), m = 2 for forces and 3 for moments, for waves of amplitude Re A exp(i omega t) at the
+    X_i = rho g L^m (RE + i IM), m = 2 for forces and 3 for moments. It is for waves of amplitude Re A exp(i omega t) at the
     origin. Modes without a row are zero.
 
     Args:
@@ -81,7 +81,8 @@ def read_directional_excitation(
     if warnings is not None:
         warnings += contradictions(rows, 3, str(path))
     tables = [
-        _of_rows(path, _once(of_heading(path, rows, slice(1, 2), one)), density * gravity, length, by) for one in headings
+        _of_rows(path, _once(of_heading(path, rows, slice(1, 2), heading)), density * gravity, length, by)
+        for heading in headings
     ]
     try:
         return DirectionalExcitation.of(np.radians(headings), tables)
@@ -103,15 +104,15 @@ def _of_rows(path: str | PathLike[str], mine: Float[np.ndarray, "r c"], weight: 
     column, name = np.unique(mine[:, 0]), quantity(by)
     if len(column) < 2:
         raise wrong("two periods or more" if by == "period" else "two frequencies or more", f"{len(column)}", "PER")
-    mode, place = mine[:, 2].astype(int) - 1, np.searchsorted(column, mine[:, 0])
+    mode, index = mine[:, 2].astype(int) - 1, np.searchsorted(column, mine[:, 0])
     count = np.zeros((6, len(column)), int)
-    np.add.at(count, (mode, place), 1)
+    np.add.at(count, (mode, index), 1)
     for i in np.flatnonzero(count.any(axis=1)):
         if (count[i] != 1).any():
-            at = int(np.flatnonzero(count[i] != 1)[-1 if by == "period" else 0])
-            raise wrong(f"each {name} once", f"{count[i, at]} times {column[at]:.5g} {UNITS[by]}", DOFS[i])
+            faulty = int(np.flatnonzero(count[i] != 1)[-1 if by == "period" else 0])
+            raise wrong(f"each {name} once", f"{count[i, faulty]} times {column[faulty]:.5g} {UNITS[by]}", DOFS[i])
     force = np.zeros((6, len(column)), complex)
-    force[mode, place] = mine[:, 5] + 1j * mine[:, 6]
+    force[mode, index] = mine[:, 5] + 1j * mine[:, 6]
     unit = weight * length ** np.array([2, 2, 2, 3, 3, 3])
     omega = to_omega(column, by)
     order = np.argsort(omega)

@@ -36,8 +36,8 @@ def read_hydrostatics(
 ) -> FileHydrostatics:
     """Read a WAMIT .hst file, rows I J C(I,J), or an .out file, by what it has in it.
 
-    C_ij = rho g L^k C(I,J), k = 2 for heave alone, 3 for heave with roll or pitch, 4 between rotations (WAMIT user manual,
-    section 3.1). Volumes are in m3 where the geometry file is in m.
+    C_ij = rho g L^k C(I,J). k is 2 for heave alone, 3 for heave with roll or pitch, 4 between rotations. Volumes are in m3
+    where the geometry file is in m.
 
     Args:
         path: The file.
@@ -48,6 +48,9 @@ def read_hydrostatics(
 
     Raises:
         InputError: With the line that is wrong.
+
+    References:
+        WAMIT user manual, section 3.1.
     """
     try:
         text = Path(path).read_text(encoding="utf-8", errors="replace")
@@ -58,18 +61,18 @@ def read_hydrostatics(
     read = _out(str(path), text, body) if out else FileHydrostatics(_hst(str(path), text, body))
     power = np.array([[2 + (i > 2) + (j > 2) for j in range(6)] for i in range(6)])
     stiffness = read.stiffness * density * gravity * float(length) ** power
-    own = np.sqrt(np.abs(np.diag(stiffness)))
+    scale = np.sqrt(np.abs(np.diag(stiffness)))
     for i, j in MIRRORED:
-        if abs(stiffness[i, j] - stiffness[j, i]) > SYMMETRIC * own[i] * own[j]:
-            at, other = f"C{i + 1}{j + 1}", f"C{j + 1}{i + 1}"
+        if abs(stiffness[i, j] - stiffness[j, i]) > SYMMETRIC * scale[i] * scale[j]:
+            entry, mirrored = f"C{i + 1}{j + 1}", f"C{j + 1}{i + 1}"
             values = f"{read.stiffness[i, j]:g} and {read.stiffness[j, i]:g}"
-            raise InputError(str(path), [Problem(at, f"the same number as {other}", values)])
+            raise InputError(str(path), [Problem(entry, f"the same number as {mirrored}", values)])
     return read._replace(stiffness=stiffness)
 
 
 def _hst(source: str, text: str, body: int | None) -> Float[np.ndarray, "6 6"]:
     matrix = np.zeros((6, 6))
-    seen: set[tuple[int, int]] = set()
+    pairs: set[tuple[int, int]] = set()
     before = 6 * ((body or 1) - 1)
     for number, line in enumerate(text.splitlines(), 1):
         words = line.replace("D", "E").replace("d", "e").split()
@@ -81,18 +84,18 @@ def _hst(source: str, text: str, body: int | None) -> Float[np.ndarray, "6 6"]:
         if not (words[0].isdigit() and words[1].isdigit() and int(words[0]) > 0 and int(words[1]) > 0):
             raise InputError(source, [Problem(where, "motions I and J from 1", " ".join(words[:2]))])
         i, j = int(words[0]), int(words[1])
-        if (i, j) in seen:
+        if (i, j) in pairs:
             raise InputError(source, [Problem(where, "each pair once", f"{i} {j} again")])
-        seen.add((i, j))
+        pairs.add((i, j))
         if body is None and max(i, j) > 6:
             count = -(-max(i, j) // 6)
             hint = f"A file of {count} or more bodies: say which, as `body: 1`."
             raise InputError(source, [Problem(where, "motions I and J of one body, 1 to 6", f"{i} {j}", hint)])
         if before < i <= before + 6 and before < j <= before + 6:
             matrix[i - 1 - before, j - 1 - before] = float(words[2])
-            if (j, i) not in seen and (i - 1 - before, j - 1 - before) in MIRRORED:
+            if (j, i) not in pairs and (i - 1 - before, j - 1 - before) in MIRRORED:
                 matrix[j - 1 - before, i - 1 - before] = float(words[2])
-    if not seen:
+    if not pairs:
         raise InputError(source, [Problem("", "rows of 3 numbers I J C(I,J)", "none")])
     if not matrix.any():
         raise InputError(source, [Problem("body" if body else "", "a hydrostatic stiffness that is not 0", "none")])
@@ -100,7 +103,7 @@ def _hst(source: str, text: str, body: int | None) -> Float[np.ndarray, "6 6"]:
 
 
 def _out(source: str, text: str, body: int | None) -> FileHydrostatics:
-    """What WAMIT prints of hydrostatics, of the only body or the one of a number."""
+    """Hydrostatics that WAMIT prints, of the only body or of the one with a number."""
     parts = text.split(VOLUMES)[1:]
     if not parts:
         raise InputError(source, [Problem("", f"WAMIT's hydrostatics, {VOLUMES}", "none")])
@@ -112,22 +115,22 @@ def _out(source: str, text: str, body: int | None) -> FileHydrostatics:
     part = parts[(body or 1) - 1]
 
     def numbers(name: str, rest: str, count: int) -> list[float]:
-        found = re.match(r"[^:]*:((?:\s+" + NUMBER + r"){" + str(count) + r"})", rest)
-        if found is None:
+        match = re.match(r"[^:]*:((?:\s+" + NUMBER + r"){" + str(count) + r"})", rest)
+        if match is None:
             line = rest.partition("\n")[0].strip()
             raise InputError(source, [Problem(name, f"{count} numbers", shown(line[:60]))])
-        return [float(word.replace("D", "E").replace("d", "e")) for word in found.group(1).split()]
+        return [float(word.replace("D", "E").replace("d", "e")) for word in match.group(1).split()]
 
     volume = float(np.median(numbers(VOLUMES, part, 3)))
     matrix = np.zeros((6, 6))
     for name, (row, columns) in OUT_ROWS.items():
-        _, found, rest = part.partition(name)
-        if not found:
+        _, separator, rest = part.partition(name)
+        if not separator:
             raise InputError(source, [Problem(name, "the hydrostatic coefficients", "none")])
         for column, value in zip(columns, numbers(name, rest, len(columns)), strict=True):
             matrix[row, column] = value
     for i, j in MIRRORED:
         matrix[j, i] = matrix[i, j]
-    _, found, rest = part.partition("Center of Gravity")
-    centre = numbers("Center of Gravity", rest, 3)[2] if found else None
+    _, separator, rest = part.partition("Center of Gravity")
+    centre = numbers("Center of Gravity", rest, 3)[2] if separator else None
     return FileHydrostatics(matrix, volume, centre)

@@ -40,17 +40,17 @@ def read_wamit(
     unit = density * length**power
     mass: dict[float, np.ndarray] = {}
     damping: dict[float, np.ndarray] = {}
-    seen: set[tuple[float, int, int]] = set()
+    read_rows: set[tuple[float, int, int]] = set()
     before, highest = 6 * ((body or 1) - 1), 0
     for number, line in enumerate(_lines(path), 1):
         words = line.replace("D", "E").replace("d", "e").split()
         if not words or (number == 1 and not _is_number(words[0])):
             continue
         period, i, j, *values = _row(source, number, words, body)
-        if (period, i, j) in seen:
+        if (period, i, j) in read_rows:
             again = f"{quantity(by)} {period:g} {UNITS[by]}, {i} {j} again"
             raise _wrong(source, number, f"each {quantity(by)} and pair once", again)
-        seen.add((period, i, j))
+        read_rows.add((period, i, j))
         highest = max(highest, i, j)
         if not (before < i <= before + 6 and before < j <= before + 6):
             continue

@@ -90,10 +90,10 @@ def table_of(
             raise wrong(expected, " ".join(f"{x:g}" for x in rows[row]), f"row {row + 1}", hint)
     if body is None:
         return rows
-    of = 1 + (rows[:, mode] - 1) // 6
-    if not (of == body).any():
-        raise wrong(f"rows of body {body}", f"bodies {', '.join(f'{one:g}' for one in np.unique(of))}", "body")
-    rows = rows[of == body]
+    body_of_row = 1 + (rows[:, mode] - 1) // 6
+    if not (body_of_row == body).any():
+        raise wrong(f"rows of body {body}", f"bodies {', '.join(f'{number:g}' for number in np.unique(body_of_row))}", "body")
+    rows = rows[body_of_row == body]
     rows[:, mode] -= 6 * (body - 1)
     return rows
 
@@ -125,9 +125,9 @@ def _is_number(word: str) -> bool:
     return True
 
 
-def same_heading(one: float | Float[np.ndarray, "..."], other: float) -> Any:
-    """Whether two headings (deg) are equal up to whole turns."""
-    return np.abs((one - other + 180) % 360 - 180) < HEADING_TOLERANCE
+def same_heading(headings: float | Float[np.ndarray, "..."], heading: float) -> Any:
+    """Whether headings (deg) are equal to one heading (deg) up to whole turns."""
+    return np.abs((headings - heading + 180) % 360 - 180) < HEADING_TOLERANCE
 
 
 def headings_in(rows: Float[np.ndarray, "r c"], headings: slice) -> Float[np.ndarray, " d"]:
@@ -153,6 +153,6 @@ def of_heading(
     mine = rows[same_heading(rows[:, headings], heading).all(axis=1)]
     if not len(mine):
         same = np.ptp(rows[:, headings], axis=1) < HEADING_TOLERANCE
-        known = ", ".join(f"{beta:g}" for beta in np.unique(rows[same, headings.start]))
-        raise InputError(str(path), [Problem("BETA", f"waves of heading {heading:g} deg", f"{known} deg")])
+        listed = ", ".join(f"{beta:g}" for beta in np.unique(rows[same, headings.start]))
+        raise InputError(str(path), [Problem("BETA", f"waves of heading {heading:g} deg", f"{listed} deg")])
     return mine

@@ -43,13 +43,13 @@ def yaml_text(value: Any) -> str:
 
 def _laid_out(value: Any) -> Any:
     if isinstance(value, dict):
-        mapping = CommentedMap({key: _laid_out(one) for key, one in value.items()})
-        flat = not any(isinstance(one, dict) or _nested(one) for one in value.values())
+        mapping = CommentedMap({key: _laid_out(item) for key, item in value.items()})
+        flat = not any(isinstance(item, dict) or _nested(item) for item in value.values())
         if flat and len(str(value)) <= WIDTH:
             mapping.fa.set_flow_style()
         return mapping
     if isinstance(value, list | tuple):
-        row = CommentedSeq([_laid_out(one) for one in value])
+        row = CommentedSeq([_laid_out(item) for item in value])
         if not _nested(value):
             row.fa.set_flow_style()
         return row
@@ -57,4 +57,4 @@ def _laid_out(value: Any) -> Any:
 
 
 def _nested(value: Any) -> bool:
-    return isinstance(value, list | tuple) and any(isinstance(one, dict | list | tuple) for one in value)
+    return isinstance(value, list | tuple) and any(isinstance(item, dict | list | tuple) for item in value)

@@ -1,6 +1,6 @@
 """HydroDyn's additional preload, stiffness and damping: AddF0, AddCLin, AddBLin, AddBQuad.
 
-F = F0 - C q - B v - Q |v| v, F0 and C in earth axes, B and Q in body axes. HydroDyn applies them with PotMod = 1 only.
+F = F0 - C q - B v - Q |v| v. F0 and C are in earth axes, B and Q in body axes. HydroDyn applies them with PotMod = 1 only.
 
 References:
     OpenFAST v5.0.0 (2895884), HydroDyn.f90, HydroDyn_CalcOutput (F_PtfmAdd).
@@ -39,14 +39,14 @@ class AddedTerms:
 
 def matrix_entries(letter: str, matrix: Matrix6) -> dict[str, float]:
     """Entries of a matrix that are not 0; ij stands for ji too where both are equal."""
-    found = {}
+    entries = {}
     for i in range(6):
         for j in range(6):
             twin = j < i and matrix[i, j] == matrix[j, i]
             one_sided = matrix[i, j] == 0.0 and matrix[j, i] != 0.0
             if (matrix[i, j] != 0.0 or one_sided) and not twin:
-                found[f"{letter}{i + 1}{j + 1}"] = tidy(matrix[i, j])
-    return found
+                entries[f"{letter}{i + 1}{j + 1}"] = tidy(matrix[i, j])
+    return entries
 
 
 def to_origin(point: Float[np.ndarray, "3"]) -> Matrix6:
@@ -75,9 +75,9 @@ def read_added_terms(file: KeyedFile, potential_flow: bool) -> AddedTerms:
     def say(key: str, treatment: Treatment, meaning: str) -> None:
         terms.items.append(ConvertedItem(f"{file.name}: {key}", treatment, meaning))
 
-    given = {"AddF0": preload, "AddCLin": stiffness, "AddBLin": linear, "AddBQuad": quadratic}
+    arrays = {"AddF0": preload, "AddCLin": stiffness, "AddBLin": linear, "AddBQuad": quadratic}
     if not potential_flow:
-        for key, value in given.items():
+        for key, value in arrays.items():
             if value.any():
                 say(key, Treatment.LEFT_OUT, "HydroDyn applies it with PotMod = 1 only; it is off in this deck.")
         return terms

@@ -38,21 +38,21 @@ def ballast_parts(
     parts, items = [], []
     by_number = {member.number: member for member in members}
     for i, group in enumerate(groups, 1):
-        masses, points, own = [], [], np.zeros((3, 3))
+        masses, points, own_inertia = [], [], np.zeros((3, 3))
         for number in group.members:
-            mass, place, inertia = _filled(by_number[number], group)
+            mass, position, inertia = _filled(by_number[number], group)
             masses.append(mass)
-            points.append(place)
-            own = own + inertia
-        weights, places = np.concatenate(masses), np.concatenate(points)
+            points.append(position)
+            own_inertia = own_inertia + inertia
+        weights, positions = np.concatenate(masses), np.concatenate(points)
         total = float(weights.sum())
         numbers = ", ".join(map(str, group.members))
         where = f"{source}: NFillGroups, group {i} (members {numbers})"
         if total == 0.0:
             items.append(ConvertedItem(where, Treatment.LEFT_OUT, "It holds nothing."))
             continue
-        centre = weights @ places / total
-        part = point_mass(f"ballast {i}", total, centre, own + spread_inertia(weights, places - centre))
+        centre = weights @ positions / total
+        part = point_mass(f"ballast {i}", total, centre, own_inertia + spread_inertia(weights, positions - centre))
         assert part is not None
         parts.append(part)
         meaning = f"Part `ballast {i}`, {total:.6g} kg, rigid: HydroDyn adds it to ElastoDyn's mass."
@@ -79,24 +79,27 @@ def drop_restoring(ballast: Sequence[Mapping[str, Any]], terms: AddedTerms, grav
     stated = np.diag(terms.stiffness)[3:5]
     if restoring <= 0.0 or not stated.all():
         return
-    left = stated - restoring
-    left[np.abs(left) < MIN_RESIDUAL * restoring] = 0.0
-    terms.stiffness[[3, 4], [3, 4]] = left
+    residual = stated - restoring
+    residual[np.abs(residual) < MIN_RESIDUAL * restoring] = 0.0
+    terms.stiffness[[3, 4], [3, 4]] = residual
     meaning = f"C44 and C55 are less by {restoring:.6g} N m/rad: in this version they hold the ballast's restoring."
     terms.items.append(ConvertedItem(f"{source}: AddCLin", Treatment.APPROXIMATED, meaning))
 
 
 def _filled(member: HydroDynMember, group: FillGroup) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Masses (kg) and places (m) of slices of a member's fill, and the sum of their own inertia (kg m2)."""
-    low, high = (joint.place for joint in member.joints)
+    """Masses (kg) and positions (m) of slices of a member's fill, and the sum of their inertia (kg m²).
+
+    The inertia of each slice is that about its own centre.
+    """
+    low, high = (joint.position for joint in member.joints)
     along = high - low
     share = 1.0 if group.surface >= high[2] else max(0.0, (group.surface - low[2]) / max(along[2], 1e-12))
     inner = member.sizes - 2 * member.walls[:, None]
     if inner.min() < 0.0:
         raise member.row.wrong("PropThck of at most half the size", f"{member.walls.max():g} m")
     point, weight = np.polynomial.legendre.leggauss(_ORDER)
-    at = 0.5 * share * (1 + point)
-    size = inner[0] + at[:, None] * (inner[1] - inner[0])
+    fractions = 0.5 * share * (1 + point)
+    size = inner[0] + fractions[:, None] * (inner[1] - inner[0])
     length = float(np.linalg.norm(along))
     area = size[:, 0] * size[:, 1] * (math.pi / 4 if member.shape == "circ" else 1.0)
     mass = group.density * area * 0.5 * share * weight * length
@@ -104,7 +107,7 @@ def _filled(member: HydroDynMember, group: FillGroup) -> tuple[np.ndarray, np.nd
     factor = 1 / 16 if member.shape == "circ" else 1 / 12  # of a thin slice: m d^2 / 16, m a^2 / 12
     second = factor * np.einsum("n,ni->i", mass, size**2)  # integrals of x^2 and y^2
     spread = second[0] * np.outer(x, x) + second[1] * np.outer(y, y)
-    return mass, low + at[:, None] * along, np.trace(spread) * np.eye(3) - spread
+    return mass, low + fractions[:, None] * along, np.trace(spread) * np.eye(3) - spread
 
 
 def _axes(axis: np.ndarray, spin: float) -> tuple[np.ndarray, np.ndarray]:

@@ -26,8 +26,8 @@ def _versions(names: list[str]) -> list[list[str]]:
 
 
 def _grown(names: list[str], first: list[str], ends: Sequence[str] = ("",)) -> dict[int, list[str]]:
-    columns = ([*first, *(f"{n}{g}{end}" for n in own for g in ("", "MG") for end in ends)] for own in _versions(names))
-    return {len(one): one for one in columns}
+    columns = ([*first, *(f"{n}{g}{end}" for n in version for g in ("", "MG") for end in ends)] for version in _versions(names))
+    return {len(layout): layout for layout in columns}
 
 
 @dataclass(frozen=True)
@@ -73,9 +73,9 @@ class CoefficientTables:
         for shape, names, word, _ in both:
             older = shape == "circ"
             depth = (f"NCoefDpth{word}", "NCoefDpth") if older else f"NCoefDpth{word}"
-            own = (f"NCoefMembers{word}", "NCoefMembers") if older else f"NCoefMembers{word}"
+            by_member = (f"NCoefMembers{word}", "NCoefMembers") if older else f"NCoefMembers{word}"
             self.depths[shape] = file.table(depth, _grown(names, ["Dpth"]))
-            rows = file.table(own, _grown(names, ["MemberID"], ("1", "2")))
+            rows = file.table(by_member, _grown(names, ["MemberID"], ("1", "2")))
             self.members[shape] = {row.whole("MemberID"): row for row in rows}
 
     def of(self, member: HydroDynMember) -> MemberCoefficients:
@@ -103,7 +103,7 @@ class CoefficientTables:
         """Share of every row of depths in the average over the wet length of a member."""
         depths = np.array([row.number("Dpth") for row in rows]) - self.level
         order = np.argsort(depths)
-        low, high = (joint.place[2] for joint in member.joints)
+        low, high = (joint.position[2] for joint in member.joints)
         heights = np.linspace(low, max(low, min(high, 0.0)) if low < 0 else high, 201)
         weights = np.zeros(len(rows))
         for i in range(len(rows)):
@@ -115,7 +115,7 @@ class CoefficientTables:
 
 def _wet_shares(member: HydroDynMember) -> Float[np.ndarray, "2"]:
     """Share of both ends' values in the average over the wet length."""
-    low, high = (joint.place[2] for joint in member.joints)
+    low, high = (joint.position[2] for joint in member.joints)
     wet = 1.0 if high <= 0.0 or low >= 0.0 else -low / (high - low)
     return np.array([1 - 0.5 * wet, 0.5 * wet])
 

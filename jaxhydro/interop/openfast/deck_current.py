@@ -38,7 +38,15 @@ class DeckCurrent:
     reference: float
 
     def at(self, z: np.ndarray, depth: float) -> np.ndarray:
-        """Velocity along x and y (m/s), (2, k), at heights over still water (m), (k,), in water of a depth (m)."""
+        """Velocity along x and y.
+
+        Args:
+            z: Heights over still water (m), (k,).
+            depth: Depth of the water (m).
+
+        Returns:
+            Velocity (m/s), (2, k).
+        """
         shapes = (
             (self.sub, np.clip((z + depth) / depth, 0.0, None) ** EXPONENT),
             (self.near, np.clip((z + self.reference) / self.reference, 0.0, None)),
@@ -93,31 +101,34 @@ def read_current(file: KeyedFile, depth: float) -> tuple[dict[str, Any], list[Co
 
     if mode != STANDARD:
         return {}, item(Treatment.LEFT_OUT, "The current of a user's routine is not known: state `water.current`.")
-    found = _read(file)
-    stated = [one for one in (found.sub, found.near, found.uniform) if one[0]]
+    currents = _read(file)
+    stated = [part for part in (currents.sub, currents.near, currents.uniform) if part[0]]
     if not stated:
         return {}, item(Treatment.LEFT_OUT, "All of its speeds are 0: there is no current.")
-    if len(stated) == 1 and not found.near[0]:
+    if len(stated) == 1 and not currents.near[0]:
         speed, heading = stated[0]
-        current = {"speed": speed, "heading": heading} | ({"exponent": EXPONENT} if found.sub[0] else {})
+        current = {"speed": speed, "heading": heading} | ({"exponent": EXPONENT} if currents.sub[0] else {})
         return current, item(Treatment.TAKEN, "`water.current`, the same law.")
-    heights = _heights(found, depth)
-    velocity = found.at(heights, depth)
+    heights = _heights(currents, depth)
+    velocity = currents.at(heights, depth)
     levels = [_level(z, *both) for z, both in zip(heights, velocity.T)]
     layered: dict[str, Any] = {"levels": levels}
-    if not found.sub[0]:
+    if not currents.sub[0]:
         return layered, item(Treatment.TAKEN, "`water.current` by levels, linear between them as here.")
     fine = np.linspace(-depth, 0.0, 4001)
     between = np.stack([np.interp(fine, heights[::-1], row[::-1]) for row in velocity])
-    missed = float(np.hypot(*(between - found.at(fine, depth))).max())
+    missed = float(np.hypot(*(between - currents.at(fine, depth))).max())
     text = f"`water.current` by {len(levels)} levels of the sum of its parts, within {missed:.2g} m/s of it at all depths."
     return layered, item(Treatment.APPROXIMATED, text)
 
 
-def _heights(found: DeckCurrent, depth: float) -> np.ndarray:
-    """Heights of levels from still water down: where the near-surface current ends, and along the power law."""
-    ends = {0.0, max(-found.reference, -depth)} if found.near[0] else {0.0}
-    power = depth * (np.linspace(0.0, 1.0, LEVELS) ** 3 - 1.0) if found.sub[0] else np.zeros(0)
+def _heights(currents: DeckCurrent, depth: float) -> np.ndarray:
+    """Heights (m) of levels from still water down.
+
+    They lie where the near-surface current ends, and along the power law.
+    """
+    ends = {0.0, max(-currents.reference, -depth)} if currents.near[0] else {0.0}
+    power = depth * (np.linspace(0.0, 1.0, LEVELS) ** 3 - 1.0) if currents.sub[0] else np.zeros(0)
     return np.unique(np.round([*ends, *power], 3))[::-1]
 
 

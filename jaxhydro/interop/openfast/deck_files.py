@@ -1,4 +1,4 @@
-"""The files of a deck: which there are, and the water that they state."""
+"""Files of an OpenFAST deck, and the water that they state."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -118,8 +118,8 @@ def water_of(deck: DeckFiles) -> WaterColumn:
 def module_items(main: KeyedFile) -> list[ConvertedItem]:
     """Items of the modules that the platform file has nothing for."""
     items = [
-        ConvertedItem(f"{main.name}: {key}", Treatment.LEFT_OUT, f"The platform file has no {what}.")
-        for key, what in MODULES.items()
+        ConvertedItem(f"{main.name}: {key}", Treatment.LEFT_OUT, f"The platform file has no {effect}.")
+        for key, effect in MODULES.items()
         if main.has(key) and main.whole(key)
     ]
     if main.has("CompSub") and main.whole("CompSub"):

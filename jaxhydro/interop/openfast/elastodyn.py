@@ -71,8 +71,8 @@ def read_parts(file: KeyedFile, level: float) -> TurbineParts:
     return TurbineParts(parts, [*items, *_reference(file)])
 
 
-def _said(file: KeyedFile, what: str, treatment: Treatment, meaning: str, warning: bool = False) -> ConvertedItem:
-    return ConvertedItem(f"{file.name}: {what}", treatment, meaning, warning)
+def _item(file: KeyedFile, keys: str, treatment: Treatment, meaning: str, warning: bool = False) -> ConvertedItem:
+    return ConvertedItem(f"{file.name}: {keys}", treatment, meaning, warning)
 
 
 def _reference(file: KeyedFile) -> Iterator[ConvertedItem]:
@@ -84,9 +84,9 @@ def _reference(file: KeyedFile) -> Iterator[ConvertedItem]:
             f"OpenFAST's motions are those of ({told}) m; here they are those of the origin at still water. Compare records "
             f"with `tracked_point: [{told}]`."
         )
-        yield _said(file, where, Treatment.APPROXIMATED, meaning)
+        yield _item(file, where, Treatment.APPROXIMATED, meaning)
     else:
-        yield _said(file, where, Treatment.TAKEN, "The reference point is the origin, as here.")
+        yield _item(file, where, Treatment.TAKEN, "The reference point is the origin, as here.")
     starts = {
         key: value
         for key in ("PtfmSurge", "PtfmSway", "PtfmHeave", "PtfmRoll", "PtfmPitch", "PtfmYaw")
@@ -97,7 +97,7 @@ def _reference(file: KeyedFile) -> Iterator[ConvertedItem]:
         meaning = (
             f"The platform file holds no initial motion. To release from it: `jaxhydro simulate platform.yaml {releases}`."
         )
-        yield _said(file, ", ".join(starts), Treatment.LEFT_OUT, meaning)
+        yield _item(file, ", ".join(starts), Treatment.LEFT_OUT, meaning)
 
 
 def _platform(file: KeyedFile, items: list[ConvertedItem]) -> Iterator[dict[str, Any]]:
@@ -108,11 +108,11 @@ def _platform(file: KeyedFile, items: list[ConvertedItem]) -> Iterator[dict[str,
     if mass < 0.0:
         raise file.wrong(file.line_of("PtfmMass"), "a number >= 0", f"{mass:g}", key="PtfmMass")
     if mass == 0.0:
-        items.append(_said(file, "PtfmMass", Treatment.LEFT_OUT, "It is 0: no part `platform`."))
+        items.append(_item(file, "PtfmMass", Treatment.LEFT_OUT, "It is 0: no part `platform`."))
         return
     yield {"name": "platform", "mass": mass, "centre_of_mass": centre, "inertia": inertia}
     meaning = f"Part `platform`, {mass:.6g} kg, with the inertia about its own centre of mass."
-    items.append(_said(file, "PtfmMass, PtfmCMzt, PtfmRIner, PtfmPIner, PtfmYIner", Treatment.TAKEN, meaning))
+    items.append(_item(file, "PtfmMass, PtfmCMzt, PtfmRIner, PtfmPIner, PtfmYIner", Treatment.TAKEN, meaning))
 
 
 def _tower(file: KeyedFile, items: list[ConvertedItem]) -> Iterator[dict[str, Any]]:
@@ -122,16 +122,16 @@ def _tower(file: KeyedFile, items: list[ConvertedItem]) -> Iterator[dict[str, An
     path = beside(file, "TwrFile")
     if file.word("TwrFile").lower() in NOT_FILES or not path.is_file():
         meaning = f"No such file: {file.word('TwrFile')}. The tower's mass is left out. Add it to `rigid_body.parts`."
-        items.append(_said(file, "TwrFile", Treatment.LEFT_OUT, meaning, warning=True))
+        items.append(_item(file, "TwrFile", Treatment.LEFT_OUT, meaning, warning=True))
         return
     tower = read_keyed_file(path, "the tower's file")
     rows, factor = tower.table("NTwInpSt", TOWER_COLUMNS, "HtFract"), tower.number("AdjTwMa", 1.0)
-    at = (np.arange(nodes) + 0.5) / nodes
-    density = factor * np.interp(at, [row.number("HtFract") for row in rows], [row.number("TMassDen") for row in rows])
+    fractions = (np.arange(nodes) + 0.5) / nodes
+    density = factor * np.interp(fractions, [row.number("HtFract") for row in rows], [row.number("TMassDen") for row in rows])
     masses = np.abs(density) * (top - base) / nodes
-    points = np.stack([0 * at, 0 * at, base + at * (top - base)], axis=-1)
+    points = np.stack([0 * fractions, 0 * fractions, base + fractions * (top - base)], axis=-1)
     if tower.has("NTwCMass") and tower.whole("NTwCMass"):
-        items.append(_said(tower, "NTwCMass", Treatment.LEFT_OUT, "Masses concentrated at points of the tower are not read."))
+        items.append(_item(tower, "NTwCMass", Treatment.LEFT_OUT, "Masses concentrated at points of the tower are not read."))
     yield from _rigid(rod("tower", masses, points), f"{file.name}: TwrFile", items)
 
 
@@ -140,12 +140,12 @@ def _nacelle(file: KeyedFile, items: list[ConvertedItem]) -> Iterator[dict[str, 
     yield from _rigid(point_mass("yaw bearing", file.number("YawBrMass", 0.0), top), f"{file.name}: YawBrMass", items)
     mass, offset = file.number("NacMass"), np.array([file.number(f"NacCM{axis}n") for axis in "xyz"])
     inertia = np.zeros((3, 3))
-    inertia[2, 2] = own = file.number("NacYIner") - mass * float(offset[:2] @ offset[:2])
-    if own < -1e-6 * abs(file.number("NacYIner")):
-        least = f"NacMass (NacCMxn^2 + NacCMyn^2) = {file.number('NacYIner') - own:.6g} or more"
+    inertia[2, 2] = yaw_inertia = file.number("NacYIner") - mass * float(offset[:2] @ offset[:2])
+    if yaw_inertia < -1e-6 * abs(file.number("NacYIner")):
+        least = f"NacMass (NacCMxn^2 + NacCMyn^2) = {file.number('NacYIner') - yaw_inertia:.6g} or more"
         raise file.wrong(file.line_of("NacYIner"), least, f"{file.number('NacYIner'):g}", key="NacYIner")
     if file.has("NacYaw") and (yaw := file.number("NacYaw")):
-        items.append(_said(file, "NacYaw", Treatment.LEFT_OUT, f"The nacelle is taken to look along x, not {yaw:g} deg off."))
+        items.append(_item(file, "NacYaw", Treatment.LEFT_OUT, f"The nacelle is taken to look along x, not {yaw:g} deg off."))
     yield from _rigid(point_mass("nacelle", mass, top + offset, inertia), f"{file.name}: NacMass, NacYIner", items)
 
 
@@ -161,7 +161,7 @@ def _rotor(file: KeyedFile, items: list[ConvertedItem]) -> Iterator[dict[str, An
     yield from _rigid(hub, f"{file.name}: HubMass, HubIner", items)
     if file.number("GenIner", 0.0):
         meaning = "The generator turns on its own bearings; its inertia is left out."
-        items.append(_said(file, "GenIner", Treatment.LEFT_OUT, meaning))
+        items.append(_item(file, "GenIner", Treatment.LEFT_OUT, meaning))
     across = np.array([-math.sin(tilt), 0.0, math.cos(tilt)])  # in the rotor's plane, upward
     side = np.cross(shaft, across)
     turn = math.radians(file.number("Azimuth", 0.0))
@@ -185,16 +185,16 @@ def _blade(
     path = beside(file, key)
     if file.word(key).lower() in NOT_FILES or not path.is_file():
         meaning = f"No such file: {file.word(key)}. The blade's mass is left out. Add it to `rigid_body.parts`."
-        items.append(_said(file, key, Treatment.LEFT_OUT, meaning, warning=True))
+        items.append(_item(file, key, Treatment.LEFT_OUT, meaning, warning=True))
         return
     blade = read_keyed_file(path, "a blade's file")
     rows, nodes = blade.table("NBlInpSt", BLADE_COLUMNS, "BlFract"), file.whole("BldNodes")
     if nodes < 1 or tip <= root:
         raise file.wrong(file.line_of("BldNodes"), "1 node or more, and TipRad beyond HubRad", f"{nodes}")
-    at = (np.arange(nodes) + 0.5) / nodes
-    density = np.interp(at, [row.number("BlFract") for row in rows], [row.number("BMassDen") for row in rows])
+    fractions = (np.arange(nodes) + 0.5) / nodes
+    density = np.interp(fractions, [row.number("BlFract") for row in rows], [row.number("BMassDen") for row in rows])
     masses = blade.number("AdjBlMs", 1.0) * density * (tip - root) / nodes
-    points = apex + (root + at[:, None] * (tip - root)) * along
+    points = apex + (root + fractions[:, None] * (tip - root)) * along
     yield from _rigid(rod(f"blade {number}", masses, points), f"{file.name}: {key}", items)
 
 

@@ -42,7 +42,7 @@ class EndCoefficients:
 
 def is_column(member: HydroDynMember) -> bool:
     """Whether a member is steeper than 45 degrees."""
-    axis = member.joints[1].place - member.joints[0].place
+    axis = member.joints[1].position - member.joints[0].position
     return bool(abs(axis[2]) > COLUMN_SLOPE * np.linalg.norm(axis))
 
 
@@ -54,7 +54,9 @@ def end_area(member: HydroDynMember, end: int) -> float:
 def wet_end_coefficients(
     members: Iterable[HydroDynMember], notes: MemberNotes, joints: MemberNotes
 ) -> dict[tuple[int, int], EndCoefficients]:
-    """Coefficients of the ends that count: of steep members, under still water, not covered by another member.
+    """Axial coefficients of the ends that count.
+
+    These are ends of steep members, under still water, that are not covered by another member.
 
     Args:
         members: All members.
@@ -64,35 +66,35 @@ def wet_end_coefficients(
     Returns:
         Coefficients by MemberID and end, 0 below and 1 above.
     """
-    at: dict[int, list[tuple[HydroDynMember, int]]] = defaultdict(list)
+    by_joint: dict[int, list[tuple[HydroDynMember, int]]] = defaultdict(list)
     for member in members:
         for end in (0, 1):
-            at[member.joints[end].number].append((member, end))
-    found = {}
-    for meeting in at.values():
+            by_joint[member.joints[end].number].append((member, end))
+    coefficients = {}
+    for meeting in by_joint.values():
         joint = meeting[0][0].joints[meeting[0][1]]
-        if joint.place[2] >= 0.0:
+        if joint.position[2] >= 0.0:
             _tell_dry(joint, joints)
             continue
         _tell_wet(joint, meeting, joints)
         for member, end in meeting:
             if is_column(member) and _uncovered(member, end, meeting):
-                found[member.number, end] = _converted(joint, member.potential, joints)
-    return found
+                coefficients[member.number, end] = _converted(joint, member.potential, joints)
+    return coefficients
 
 
 def _uncovered(member: HydroDynMember, end: int, meeting: list[tuple[HydroDynMember, int]]) -> bool:
     """Whether part of an end is free: the larger of two that meet on one axis keeps the ring."""
-    own, area = _outward(member, end), end_area(member, end)
-    for other, its in meeting:
-        facing = other is not member and float(own @ _outward(other, its)) < -_ALIGNED
-        if facing and area <= end_area(other, its) * (1 + 1e-9):
+    direction, area = _outward(member, end), end_area(member, end)
+    for other, other_end in meeting:
+        facing = other is not member and float(direction @ _outward(other, other_end)) < -_ALIGNED
+        if facing and area <= end_area(other, other_end) * (1 + 1e-9):
             return False
     return True
 
 
 def _outward(member: HydroDynMember, end: int) -> np.ndarray:
-    along = member.joints[1].place - member.joints[0].place
+    along = member.joints[1].position - member.joints[0].position
     return (along if end else -along) / np.linalg.norm(along)
 
 

@@ -66,8 +66,8 @@ def export_deck(source: ExportSource) -> ExportedModel:
     items = [_water(source), *items, *_members(source), *tables.notes.items("in the deck"), *flow.items, *terms.items]
     lines = [load for load in map(plain_load, model.loads) if isinstance(load, CatenaryLines)]
     for load in lines:
-        texts[IN_OPENFAST], said = moordyn_file(source, load, IN_OPENFAST)
-        items += said
+        texts[IN_OPENFAST], line_items = moordyn_file(source, load, IN_OPENFAST)
+        items += line_items
     texts["hydrodyn.dat"] = filled(
         "hydrodyn.dat",
         name=source.name,

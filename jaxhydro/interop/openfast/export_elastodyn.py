@@ -25,12 +25,12 @@ def elastodyn_files(source: ExportSource) -> tuple[dict[str, str], list[Converte
     body = source.model.body
     mass, centre, inertia = float(body.mass), np.asarray(body.centre, float), np.asarray(body.inertia, float)
     base = max(0.0, float(np.ceil(centre[2]))) + CLEARANCE
-    places = {"Ixx": (0, 0), "Iyy": (1, 1), "Izz": (2, 2), "Ixy": (0, 1), "Iyz": (1, 2), "Ixz": (0, 2)}
+    entries = {"Ixx": (0, 0), "Iyy": (1, 1), "Izz": (2, 2), "Ixy": (0, 1), "Iyz": (1, 2), "Ixz": (0, 2)}
     values = {
         "name": source.name,
         "mass": digits(mass),
         "centre": [digits(value) for value in centre],
-        "inertia": {key: digits(inertia[place]) for key, place in places.items()},
+        "inertia": {key: digits(inertia[index]) for key, index in entries.items()},
         "tower_base": digits(base),
         "tower_top": digits(base + TOWER_LENGTH),
         "line_mass": digits(LINE_MASS),

@@ -1,6 +1,7 @@
-"""Tables of potential flow beside HydroDyn's file: hydrostatics, added mass and radiation, excitation, drift.
+"""Tables of potential flow beside HydroDyn's file: hydrostatics, radiation, excitation and drift.
 
-HydroDyn opens `.hst`, `.1` and `.3` in any case; what the platform has no table for is written as zeros.
+The table of radiation has the added mass, too. HydroDyn opens `.hst`, `.1` and `.3` in any case. A table that the platform
+has not is written as zeros.
 
 References:
     OpenFAST v5.0.0 (2895884), WAMIT.f90, WAMIT_Init (files, PER = 0, F_HS_Moment_Offset, SttcDim, RdtnDim), and HydroDyn
@@ -127,7 +128,7 @@ def exported_flow(source: ExportSource) -> ExportedFlow:
 
 def _usable(source: ExportSource, flow: ExportedFlow) -> dict:
     """Tables that HydroDyn can read, all with one ULEN; the others are said to be left out."""
-    found: dict = {}
+    usable: dict = {}
     for key, table in source.tables.items():
         loads = [load for load in source.model.loads if isinstance(load, OF_TABLES[key])]
         share = float(loads[0].values[f"{loads[0].prefix}.share"]) if loads else 0.0
@@ -139,26 +140,29 @@ def _usable(source: ExportSource, flow: ExportedFlow) -> dict:
             reason = f"HydroDyn reads periods, and its first column is in {table.by}"
         elif table.body not in (None, 1):
             reason = "it is of another body than the first"
-        elif any(other.length != table.length for other in found.values()):
+        elif any(other.length != table.length for other in usable.values()):
             reason = "HydroDyn has one ULEN for all tables"
         else:
-            found[key] = table
+            usable[key] = table
             if share != 1.0:
                 flow.say(f"computed_{key}.share", Treatment.LEFT_OUT, f"The deck has the whole table, not {share:g} of it.")
             continue
         flow.say(key, Treatment.LEFT_OUT, f"{table.path.name} is left out: {reason}.")
-    return found
+    return usable
 
 
 def _hydrostatics(model: Model, flow: ExportedFlow) -> None:
-    """`.hst` and the displaced volume: what is declared, or all where potential flow stands for the members."""
+    """Write `.hst` and the displaced volume.
+
+    They are 0 unless the platform file states hydrostatics or potential flow stands for the members.
+    """
     load = next(load for load in model.loads if isinstance(load, Buoyancy))
-    coupling = [one.stiffness for one in model.loads if isinstance(one, HydrostaticCoupling)]
-    declared = bool(float(load.extra_force) or np.any(load.extra_stiffness) or coupling)
+    coupling = [term.stiffness for term in model.loads if isinstance(term, HydrostaticCoupling)]
+    stated = bool(float(load.extra_force) or np.any(load.extra_stiffness) or coupling)
     matrix, weight = np.zeros((6, 6)), float(model.environment.density * model.environment.gravity)
-    if declared or flow.excitation:
-        force, slope = (np.asarray(one) for one in _at_rest(load, jnp.asarray(weight)))
-        whole = -slope + sum((np.asarray(one) for one in coupling), np.zeros((6, 6)))
+    if stated or flow.excitation:
+        force, slope = (np.asarray(array) for array in _at_rest(load, jnp.asarray(weight)))
+        whole = -slope + sum((np.asarray(stiffness) for stiffness in coupling), np.zeros((6, 6)))
         matrix[RESTORING, RESTORING] = 0.5 * (whole + whole.T)[RESTORING, RESTORING]
         small = 1e-12 * np.abs(matrix).max()
         matrix[np.abs(matrix) <= small] = 0.0
@@ -189,17 +193,17 @@ def _at_rest(load: Buoyancy, weight: Float[Array, ""]) -> tuple[Float[Array, "6"
 
 def _infinite(model: Model, flow: ExportedFlow) -> Iterator[str]:
     """Entries of the added mass of infinite frequency: row, column and value."""
-    added = sum((np.asarray(assemble(one.entries)) for one in model.loads if isinstance(one, AddedMass)), np.zeros((6, 6)))
+    added = sum((np.asarray(assemble(load.entries)) for load in model.loads if isinstance(load, AddedMass)), np.zeros((6, 6)))
     if added.any():
         flow.say("added_mass", Treatment.TAKEN, f"Rows of PER = 0 in {ROOT}.1.")
     if flow.excitation:
         strips = tuple(load for load in model.loads if isinstance(load, StripInertia | EndInertia | ComputedAddedMass))
-        own = np.asarray(linearised(replace(model, loads=strips), jnp.zeros(6))[0]) if strips else np.zeros((6, 6))
-        own = own - np.asarray(model.body.mass_matrix()) if strips else own
-        added = added + np.where(np.abs(own) > 1e-9 * np.abs(own).max(), own, 0.0)
+        strip_mass = np.asarray(linearised(replace(model, loads=strips), jnp.zeros(6))[0]) if strips else np.zeros((6, 6))
+        strip_mass = strip_mass - np.asarray(model.body.mass_matrix()) if strips else strip_mass
+        added = added + np.where(np.abs(strip_mass) > 1e-9 * np.abs(strip_mass).max(), strip_mass, 0.0)
         text = f"Added mass of members, upright in still water, in rows of PER = 0 of {ROOT}.1: PropPot TRUE leaves drag alone."
         flow.say("coefficients: Ca_t, Ca_z", Treatment.APPROXIMATED, text)
-    elif any(isinstance(one, ComputedAddedMass) and float(one.share) for one in model.loads):
+    elif any(isinstance(load, ComputedAddedMass) and float(load.share) for load in model.loads):
         text = "Members keep their own added mass (Ca): without a table of excitation HydroDyn has no other place for it."
         flow.say("radiation: added_mass", Treatment.LEFT_OUT, text)
     density = float(model.environment.density)

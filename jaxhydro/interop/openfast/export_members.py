@@ -56,7 +56,7 @@ def member_tables(source: ExportSource, buoyant: bool, potential: bool) -> Membe
     kinds = list(dict.fromkeys(axial))
     tables.rows["axial"] = [row(i, *values) for i, values in enumerate(kinds, 1)]
     tables.rows["joints"] = [
-        row(joint.number, *joint.place, kinds.index(values) + 1, 0) for joint, values in zip(joints, axial, strict=True)
+        row(joint.number, *joint.position, kinds.index(values) + 1, 0) for joint, values in zip(joints, axial, strict=True)
     ]
     tables.diameter, diffracting = (0.0, set[int]()) if potential else _diffracting(source, pieces, tables.notes)
     circles, boxes = _sections(pieces, True), _sections(pieces, False)
@@ -149,7 +149,8 @@ def _diffracting(source: ExportSource, pieces: Sequence[Piece], notes: MemberNot
     wanted = [piece for piece in pieces if piece.member.diffracts]
     able = [piece for piece in wanted if _can_diffract(piece)]
     volumes = [
-        sum(piece.area(0) * -piece.ends[0, 2] for piece in able if _fits(piece, float(other.sizes[0, 0]))) for other in able
+        sum(piece.area(0) * -piece.ends[0, 2] for piece in able if _fits(piece, float(reference.sizes[0, 0])))
+        for reference in able
     ]
     diameter = float(able[int(np.argmax(volumes))].sizes[0, 0]) if able else 0.0
     chosen = {piece.number for piece in able if _fits(piece, diameter)}

@@ -1,7 +1,7 @@
 """MoorDyn's file from catenary lines, for OpenFAST and on its own.
 
-A line type's mass in air is that which weighs as much in water as here. Drag and added mass are those of the public deck of
-the IEA 15 MW platform: the catenaries have none, and MoorDyn's search for its initial state needs drag.
+A line type's mass in air gives the same weight in water as here. Drag and added mass are those of the public deck of the
+IEA 15 MW platform. The catenaries have none, and MoorDyn's search for its initial state needs drag.
 
 References:
     MoorDyn documentation, The MoorDyn input file; OpenFAST v5.0.0 (2895884), MoorDyn.f90 (options, WtrDpth);
@@ -64,22 +64,30 @@ def moordyn_file(source: ExportSource, load: CatenaryLines, name: str) -> tuple[
         name: Name of the file. That of `IN_OPENFAST` has no gravity and density: OpenFAST states them.
     """
     system = mooring_system_of(source, load, STEEL)
-    kinds, places = list(system.line_types), list(system.points)
+    kinds, point_names = list(system.line_types), list(system.points)
     items = [
-        ConvertedItem(f"mooring.line_types.{kind}", Treatment.APPROXIMATED, _told_diameter(one.diameter))
-        for kind, one in system.line_types.items()
+        ConvertedItem(f"mooring.line_types.{kind}", Treatment.APPROXIMATED, _told_diameter(line_type.diameter))
+        for kind, line_type in system.line_types.items()
         if kind not in source.line_diameters
     ]
     types = [
-        row(_word(kind, kinds), one.diameter, one.mass_per_length, one.axial_stiffness, DAMPING, *HYDRODYNAMICS)
-        for kind, one in system.line_types.items()
+        row(
+            _word(kind, kinds),
+            line_type.diameter,
+            line_type.mass_per_length,
+            line_type.axial_stiffness,
+            DAMPING,
+            *HYDRODYNAMICS,
+        )
+        for kind, line_type in system.line_types.items()
     ]
     points = [
-        row(number, WORDS[one.attachment], *one.position, 0, 0, 0, 0) for number, one in enumerate(system.points.values(), 1)
+        row(number, WORDS[point.attachment], *point.position, 0, 0, 0, 0)
+        for number, point in enumerate(system.points.values(), 1)
     ]
     lines, fairleads = list[str](), list[int]()
     for number, line in enumerate(system.lines.values(), 1):
-        ends = [places.index(end) + 1 for end in line.ends]
+        ends = [point_names.index(end) + 1 for end in line.ends]
         count = max(FEWEST, math.ceil(line.length / SEGMENT))
         lines.append(row(number, _word(line.line_type, kinds), *ends, line.length, count, "-"))
         if system.points[line.ends[1]].attachment is Attachment.PLATFORM:

@@ -69,36 +69,39 @@ class PieceJoint:
 
     Attributes:
         number: JointID.
-        place: m, (3,).
+        position: m, (3,).
         meeting: Pieces that meet there, each with its end, 0 or 1.
     """
 
     number: int
-    place: Float[np.ndarray, "3"]
+    position: Float[np.ndarray, "3"]
     meeting: list[tuple[Piece, int]]
 
     def largest(self) -> tuple[Piece, int]:
         """The piece with the largest section there, whose coefficients the joint has, and its end."""
-        return max(self.meeting, key=lambda one: one[0].area(one[1]))
+        return max(self.meeting, key=lambda pair: pair[0].area(pair[1]))
 
 
 def pieces_of(members: Sequence[Member]) -> list[Piece]:
     """Members cut at their stations."""
-    found: list[Piece] = []
+    pieces: list[Piece] = []
     for member in members:
         for low, high, sizes in _spans(member):
-            ends = np.stack([member.a + at * (member.b - member.a) for at in (low, high)])
+            ends = np.stack([member.a + fraction * (member.b - member.a) for fraction in (low, high)])
             if ends[0][2] > ends[1][2]:
                 ends, sizes = ends[::-1], sizes[::-1]
             ends = np.where(np.abs(ends) < 1e-12 * np.abs(ends).max(), 0.0, ends)
             turned = float(member.axis @ (ends[1] - ends[0])) < 0.0
             spin = 0.0 if member.circular else math.degrees(-member.twist if turned else member.twist)
-            found.append(Piece(len(found) + 1, member, ends, sizes, spin))
-    return found
+            pieces.append(Piece(len(pieces) + 1, member, ends, sizes, spin))
+    return pieces
 
 
 def _spans(member: Member) -> Iterator[tuple[float, float, Float[np.ndarray, "2 2"]]]:
-    """First and last fraction of the length, and sizes there; the short taper of a step in size is left out."""
+    """First and last fraction of the length, and sizes (m) there, of each part between stations.
+
+    The short taper of a step in size is left out.
+    """
     stations, sizes = np.asarray(member.stations, float), np.asarray(member.sizes, float)
     steps = np.flatnonzero(np.diff(stations) < STEP).tolist()
     places = stations.copy()
@@ -131,8 +134,8 @@ def joints_of(pieces: Sequence[Piece]) -> tuple[list[PieceJoint], dict[tuple[int
 
 
 def _meets(joint: PieceJoint, piece: Piece, end: int) -> bool:
-    other, its = joint.meeting[0]
-    if not (piece.member.column and other.member.column) or len(joint.meeting) > 1 or its == end:
+    other, other_end = joint.meeting[0]
+    if not (piece.member.column and other.member.column) or len(joint.meeting) > 1 or other_end == end:
         return False
-    near = np.linalg.norm(joint.place - piece.ends[end]) < MEETING * max(piece.radius(end), other.radius(its))
+    near = np.linalg.norm(joint.position - piece.ends[end]) < MEETING * max(piece.radius(end), other.radius(other_end))
     return bool(near and piece.axis @ other.axis > ALIGNED)

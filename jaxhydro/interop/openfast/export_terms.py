@@ -1,6 +1,6 @@
 """HydroDyn's AddF0, AddCLin, AddBLin and AddBQuad from a model's loads.
 
-F = F0 - C q - B v - Q |v| v, F0 and C in earth axes, B and Q in body axes, as the loads have them.
+F = F0 - C q - B v - Q |v| v. F0 and C are in earth axes, B and Q in body axes, as the loads have them.
 
 References:
     OpenFAST v5.0.0 (2895884), HydroDyn.f90, HydroDyn_CalcOutput (F_PtfmAdd).
@@ -43,9 +43,9 @@ class ExportedTerms:
 
     def rows(self) -> dict[str, list[str]]:
         """Rows of each key, as HydroDyn's file has them."""
-        found = {"AddF0": [row(float(value)) for value in self.preload]}
+        rows = {"AddF0": [row(float(value)) for value in self.preload]}
         matrices = {"AddCLin": self.stiffness, "AddBLin": self.linear, "AddBQuad": self.quadratic}
-        return found | {key: [row(*map(float, line)) for line in matrix] for key, matrix in matrices.items()}
+        return rows | {key: [row(*map(float, line)) for line in matrix] for key, matrix in matrices.items()}
 
 
 def exported_terms(source: ExportSource) -> ExportedTerms:

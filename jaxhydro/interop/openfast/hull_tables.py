@@ -38,12 +38,12 @@ class Joint:
 
     Attributes:
         number: JointID.
-        place: From the origin at still water, m.
+        position: From the origin at still water, m.
         axial: Its row of the axial coefficients.
     """
 
     number: int
-    place: Float[np.ndarray, "3"]
+    position: Float[np.ndarray, "3"]
     axial: TableRow
 
 
@@ -105,10 +105,10 @@ def read_joints(file: KeyedFile, level: float) -> dict[int, Joint]:
     joints = {}
     for row in file.table("NJoints", JOINTS):
         number = row.whole("JointID")
-        place = np.array([row.number(f"Joint{axis}i") for axis in "xyz"]) - [0.0, 0.0, level]
+        position = np.array([row.number(f"Joint{axis}i") for axis in "xyz"]) - [0.0, 0.0, level]
         if number in joints:
             raise row.wrong("each JointID once", f"{number} again")
-        joints[number] = Joint(number, place, _of(axial, row, "JointAxID", "AxCoefID"))
+        joints[number] = Joint(number, position, _of(axial, row, "JointAxID", "AxCoefID"))
     return joints
 
 
@@ -120,7 +120,7 @@ def read_members(file: KeyedFile, joints: dict[int, Joint]) -> list[HydroDynMemb
     """
     circles = {row.whole("PropSetID"): row for row in file.table(("NPropSetsCyl", "NPropSets"), CYLINDERS)}
     boxes = {row.whole("PropSetID"): row for row in file.table("NPropSetsRec", RECTANGLES)}
-    found, numbers = [], set()
+    members, numbers = [], set()
     for row in file.table("NMembers", MEMBERS):
         if (number := row.whole("MemberID")) in numbers:
             raise row.wrong("each MemberID once", f"{number} again")
@@ -132,9 +132,9 @@ def read_members(file: KeyedFile, joints: dict[int, Joint]) -> list[HydroDynMemb
         sizes = [[wall.number(key) for key in (("PropA", "PropB") if rectangular else ("PropD", "PropD"))] for wall in walls]
         if min(map(min, sizes)) <= 0.0:
             raise row.wrong("property sets of a size > 0", f"{min(map(min, sizes)):g} m")
-        if ends[0].place.tolist() == ends[1].place.tolist():
+        if ends[0].position.tolist() == ends[1].position.tolist():
             raise row.wrong("two joints at two places", f"{ends[0].number} and {ends[1].number} at one")
-        spin, flipped = row.number("MSpinOrient", 0.0), bool(ends[0].place[2] > ends[1].place[2])
+        spin, flipped = row.number("MSpinOrient", 0.0), bool(ends[0].position[2] > ends[1].position[2])
         step = -1 if flipped else 1
         member = HydroDynMember(
             number,
@@ -148,8 +148,8 @@ def read_members(file: KeyedFile, joints: dict[int, Joint]) -> list[HydroDynMemb
             row.flag("PropPot"),
             row,
         )
-        found.append(member)
-    return found
+        members.append(member)
+    return members
 
 
 def read_fill_groups(file: KeyedFile, level: float, density: float, members: list[HydroDynMember]) -> list[FillGroup]:
@@ -164,7 +164,7 @@ def read_fill_groups(file: KeyedFile, level: float, density: float, members: lis
     Raises:
         InputError: The table is broken, or a group names a member that is not there.
     """
-    groups, known = [], {member.number for member in members}
+    groups, member_numbers = [], {member.number for member in members}
     for index, words in file.word_rows("NFillGroups"):
         count = to_number(words[0])
         numbers = [to_number(word) for word in words[1:]]
@@ -172,17 +172,17 @@ def read_fill_groups(file: KeyedFile, level: float, density: float, members: lis
         if count != count // 1 or count < 1 or len(words) < count + 3:
             raise file.wrong(index, expected, f"{len(words)} words")
         listed, surface, last = numbers[: int(count)], numbers[int(count)], bare_word(words[int(count) + 2])
-        if missing := [number for number in listed if number not in known]:
+        if missing := [number for number in listed if number not in member_numbers]:
             raise file.wrong(index, "members of the table of members", f"{missing[0]:g}")
-        own = density if last.lower() == "default" else to_number(last)
-        if not np.isfinite([surface, own]).all() or own < 0.0:
+        fill_density = density if last.lower() == "default" else to_number(last)
+        if not np.isfinite([surface, fill_density]).all() or fill_density < 0.0:
             raise file.wrong(index, expected, f"{words[int(count) + 1]} {last}")
-        groups.append(FillGroup(tuple(map(int, listed)), surface - level, own))
+        groups.append(FillGroup(tuple(map(int, listed)), surface - level, fill_density))
     return groups
 
 
-def _of(rows: Mapping[int, Row], row: TableRow, column: str, of: str) -> Row:
+def _of(rows: Mapping[int, Row], row: TableRow, column: str, identifier: str) -> Row:
     if (number := row.whole(column)) not in rows:
-        known = ", ".join(map(str, list(rows)[:20])) or "none"
-        raise row.wrong(f"{column}: a {of} of the file ({known})", f"{number}")
+        listed = ", ".join(map(str, list(rows)[:20])) or "none"
+        raise row.wrong(f"{column}: a {identifier} of the file ({listed})", f"{number}")
     return rows[number]

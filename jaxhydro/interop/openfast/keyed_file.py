@@ -206,12 +206,12 @@ class KeyedFile:
             return []
         start, count = self.line_of(key), self.whole(key)
         self._used.update(range(start, start + 3 + count))
-        found = [(start + 3 + i, self.words(start + 3 + i)) for i in range(count)]
-        for i, (index, words) in enumerate(found):
+        rows = [(start + 3 + i, self.words(start + 3 + i)) for i in range(count)]
+        for i, (index, words) in enumerate(rows):
             if not words or math.isnan(to_number(words[0])):
-                said = shown(self.lines[index].strip()) if index < len(self.lines) else "the end of the file"
-                raise self.wrong(index, f"row {i + 1} of {count} of {key}", said)
-        return found
+                text = shown(self.lines[index].strip()) if index < len(self.lines) else "the end of the file"
+                raise self.wrong(index, f"row {i + 1} of {count} of {key}", text)
+        return rows
 
     def table_under(self, header: str, layouts: Layouts) -> TableRow | None:
         """The one row under a header whose first word is given, or None."""
@@ -221,18 +221,18 @@ class KeyedFile:
         self._used.update(range(head, head + 3))
         return self._row(head, head + 2, f"the row of {header}", layouts)
 
-    def _row(self, header: int, index: int, what: str, layouts: Layouts) -> TableRow:
+    def _row(self, header: int, index: int, description: str, layouts: Layouts) -> TableRow:
         words = self.words(index)
         if index >= len(self.lines) or not words or math.isnan(to_number(words[0])):
             found = shown(self.lines[index].strip()) if index < len(self.lines) else "the end of the file"
-            raise self.wrong(min(index, len(self.lines) - 1), what, found)
+            raise self.wrong(min(index, len(self.lines) - 1), description, found)
         names = self.words(header)
         stated = next((i for i, name in enumerate(names) if name.startswith(("[", "!"))), len(names))
         count = stated if stated in layouts and len(names) > 2 else len(words)
         if count not in layouts:
             count = max((n for n in layouts if n <= len(words)), default=0)
         if count == 0 or len(words) < count:
-            expected = f"{what}, {count or min(layouts)} columns"
+            expected = f"{description}, {count or min(layouts)} columns"
             raise self.wrong(index, expected, f"{len(words)}")
         cells = dict(zip(layouts[count], words, strict=False))
         return TableRow(str(self.path), index + 1, {name: bare_word(word) for name, word in cells.items()})
@@ -243,10 +243,10 @@ class KeyedFile:
 
     def unused(self) -> list[str]:
         """Keys with a value that were not used, in the order of the file."""
-        found = []
+        keys = []
         for i, key in self._keys.items():
             first = self.words(i)[0]
             value = math.isfinite(to_number(first)) or first[0] in "\"'" or first.lower() in _STATED
             if i not in self._used and value and key.lower() not in FLAGS and key.lower() not in _STATED:
-                found.append(key)
-        return list(dict.fromkeys(found))
+                keys.append(key)
+        return list(dict.fromkeys(keys))

@@ -13,8 +13,8 @@ def point_mass(name: str, mass: float, centre: Float[np.ndarray, "3"], inertia: 
     if mass <= 0.0:
         return None
     small = 1e-12 * float(np.abs(centre).max())
-    place = [tidy(value) if abs(value) > small else 0.0 for value in centre]
-    part: dict[str, Any] = {"name": name, "mass": tidy(mass), "centre_of_mass": place}
+    position = [tidy(value) if abs(value) > small else 0.0 for value in centre]
+    part: dict[str, Any] = {"name": name, "mass": tidy(mass), "centre_of_mass": position}
     if inertia is not None and np.any(inertia):
         part["inertia"] = inertia_entries(inertia)
     return part
@@ -38,9 +38,9 @@ def spread_inertia(masses: Float[np.ndarray, " n"], arms: Float[np.ndarray, "n 3
 def inertia_entries(inertia: Matrix3) -> dict[str, float]:
     """Entries Ixx to Iyz of an inertia matrix; products that are no more than rounding are left out."""
     small = 1e-12 * float(np.abs(inertia).max())
-    found = {f"I{name}{name}": max(0.0, tidy(inertia[i, i])) for i, name in enumerate("xyz")}
+    entries = {f"I{name}{name}": max(0.0, tidy(inertia[i, i])) for i, name in enumerate("xyz")}
     pairs = {"Ixy": (0, 1), "Ixz": (0, 2), "Iyz": (1, 2)}
-    return found | {key: tidy(inertia[place]) for key, place in pairs.items() if abs(inertia[place]) > small}
+    return entries | {key: tidy(inertia[index]) for key, index in pairs.items() if abs(inertia[index]) > small}
 
 
 def tidy(value: float) -> float:

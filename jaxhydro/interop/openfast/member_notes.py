@@ -1,4 +1,4 @@
-"""What is said about several members at once."""
+"""Notes on members for the items of a conversion, one note for several members."""
 
 from collections.abc import Iterator
 
@@ -17,21 +17,21 @@ class MemberNotes:
         self.source = source
         self._numbers: dict[tuple[str, Treatment, str], list[int]] = {}
 
-    def add(self, number: int, what: str, treatment: Treatment, meaning: str) -> None:
+    def add(self, number: int, keys: str, treatment: Treatment, meaning: str) -> None:
         """Say something about a member or a joint.
 
         Args:
             number: MemberID or JointID.
-            what: Keys that it is about.
+            keys: Keys that it is about.
             treatment: What became of them.
             meaning: The sentence.
         """
-        numbers = self._numbers.setdefault((what, treatment, meaning), [])
+        numbers = self._numbers.setdefault((keys, treatment, meaning), [])
         if number not in numbers:
             numbers.append(number)
 
-    def items(self, of: str = "members") -> Iterator[ConvertedItem]:
+    def items(self, label: str = "members") -> Iterator[ConvertedItem]:
         """The sentences as items, in the order in which they came."""
-        for (what, treatment, meaning), numbers in self._numbers.items():
+        for (keys, treatment, meaning), numbers in self._numbers.items():
             shown = ", ".join(map(str, numbers[:12])) + (f" and {len(numbers) - 12} more" if len(numbers) > 12 else "")
-            yield ConvertedItem(f"{self.source}: {what}, {of} {shown}", treatment, meaning)
+            yield ConvertedItem(f"{self.source}: {keys}, {label} {shown}", treatment, meaning)

@@ -92,7 +92,7 @@ def _section(file: KeyedFile, titles: Sequence[str]) -> list[TableRow]:
     if len(file.words(header)) > 1 and math.isfinite(to_number(file.words(header)[0])):
         header += 1  # version 1 has a count on top
     names = file.words(header)
-    columns = {name: i for name, others in reversed(NAMES.items()) for i, own in enumerate(names) if own in others}
+    columns = {name: i for name, spellings in reversed(NAMES.items()) for i, column in enumerate(names) if column in spellings}
     if "Name" not in columns and "ID" not in columns:
         raise file.wrong(header, f"the header of {titles[0]}", shown(file.lines[header].strip() if names else "nothing"))
     rows = []
@@ -118,6 +118,6 @@ def _line_type(row: TableRow) -> LineType:
 
 
 def _point(row: TableRow, level: float) -> MooringPoint:
-    place = (row.number("X"), row.number("Y"), row.number("Z") - level)
+    position = (row.number("X"), row.number("Y"), row.number("Z") - level)
     attachment = ATTACHMENTS.get(row.cells["Type"].lower(), Attachment.OTHER)
-    return MooringPoint(row.cells["ID"], attachment, place, row.number("M", 0.0), row.number("V", 0.0))
+    return MooringPoint(row.cells["ID"], attachment, position, row.number("M", 0.0), row.number("V", 0.0))

@@ -17,16 +17,16 @@ def as_spelled(path: Path) -> Path:
     """
     if path.exists() or not path.parent.is_dir():
         return path
-    alike = [other for other in path.parent.iterdir() if other.name.lower() == path.name.lower()]
+    alike = [entry for entry in path.parent.iterdir() if entry.name.lower() == path.name.lower()]
     return alike[0] if len(alike) == 1 else path
 
 
-def read_keyed_file(path: Path, what: str) -> KeyedFile:
+def read_keyed_file(path: Path, description: str) -> KeyedFile:
     """Read one of OpenFAST's files.
 
     Args:
         path: The file.
-        what: What it is, for messages.
+        description: What it is, for messages.
 
     Raises:
         InputError: It cannot be read.
@@ -34,10 +34,10 @@ def read_keyed_file(path: Path, what: str) -> KeyedFile:
     try:
         text = path.read_text(encoding="utf-8", errors="replace")
     except FileNotFoundError:
-        raise InputError(str(path), [Problem("", what, "no such file", suggest_path(path))]) from None
+        raise InputError(str(path), [Problem("", description, "no such file", suggest_path(path))]) from None
     except (OSError, ValueError) as error:
-        said = str(getattr(error, "strerror", None) or error)
-        raise InputError(str(path), [Problem("", what, said)]) from None
+        reason = str(getattr(error, "strerror", None) or error)
+        raise InputError(str(path), [Problem("", description, reason)]) from None
     if "\x00" in text:
-        raise InputError(str(path), [Problem("", what, "binary content")])
+        raise InputError(str(path), [Problem("", description, "binary content")])
     return KeyedFile(path, text.splitlines())

@@ -121,9 +121,9 @@ def _second_order(modes: dict[str, int], root: Path, table: Any, entry: Any, flo
             say(f"{key}, .12d", treatment, f"`drift` by {root.name}.12d, approximation {approximation}.{more}")
         elif modes[key]:
             say(key, Treatment.LEFT_OUT, f"Tables .{modes[key]} are not read; .12d is.")
-    for key, what in (("MnDrift", "Mean drift alone"), ("SumQTF", "Forces at sum frequencies")):
+    for key, effect in (("MnDrift", "Mean drift alone"), ("SumQTF", "Forces at sum frequencies")):
         if modes[key]:
-            say(key, Treatment.LEFT_OUT, f"{what} have no counterpart.")
+            say(key, Treatment.LEFT_OUT, f"{effect} have no counterpart.")
 
 
 def _one_body_at_origin(file: KeyedFile) -> None:

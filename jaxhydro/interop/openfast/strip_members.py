@@ -65,13 +65,13 @@ def convert_members(members: Sequence[HydroDynMember], tables: CoefficientTables
     source = tables.file.name
     notes, joints, hull = MemberNotes(source), MemberNotes(source), ConvertedHull()
     ends = wet_end_coefficients(members, notes, joints)
-    own = {member.number: tables.of(member) for member in members}
-    hull.diffracting = any(one.diffracting for one in own.values())
+    coefficients = {member.number: tables.of(member) for member in members}
+    hull.diffracting = any(entry.diffracting for entry in coefficients.values())
     for member in members:
         if member.potential and not potential_flow:
             raise member.row.wrong("PropPot FALSE, as PotMod is not 1", "TRUE")
-        _tell(member, own[member.number], notes)
-        _place(member, own[member.number], ends, hull, notes)
+        _tell(member, coefficients[member.number], notes)
+        _place(member, coefficients[member.number], ends, hull, notes)
     if members:
         text = f"{len(members)} members, and their joints and property sets, as `members` and `coefficients`."
         hull.items.append(ConvertedItem(f"{source}: NMembers", Treatment.TAKEN, text))
@@ -81,23 +81,23 @@ def convert_members(members: Sequence[HydroDynMember], tables: CoefficientTables
     return hull
 
 
-def _tell(member: HydroDynMember, own: MemberCoefficients, notes: MemberNotes) -> None:
-    """What is not as in HydroDyn."""
+def _tell(member: HydroDynMember, coefficients: MemberCoefficients, notes: MemberNotes) -> None:
+    """Note where the platform file's member is not as in HydroDyn."""
 
-    def say(what: str, treatment: Treatment, meaning: str) -> None:
-        notes.add(member.number, what, treatment, meaning)
+    def say(keys: str, treatment: Treatment, meaning: str) -> None:
+        notes.add(member.number, keys, treatment, meaning)
 
-    if own.varying:
+    if coefficients.varying:
         text = "Coefficients vary along the member; the mean over what is under still water was taken."
         say("Cd, Ca", Treatment.APPROXIMATED, text)
-    if own.pressure != 1.0 and not member.potential:
-        say("Cp", Treatment.APPROXIMATED, f"The waves' pressure acts with Cp = 1, not {own.pressure:g}.")
-    if own.buoyancy != 1.0 and not member.potential:
-        say("Cb", Treatment.LEFT_OUT, f"Buoyancy is that of the section, not {own.buoyancy:g} times it.")
-    if own.axial and np.ptp(member.sizes, axis=0).any():
+    if coefficients.pressure != 1.0 and not member.potential:
+        say("Cp", Treatment.APPROXIMATED, f"The waves' pressure acts with Cp = 1, not {coefficients.pressure:g}.")
+    if coefficients.buoyancy != 1.0 and not member.potential:
+        say("Cb", Treatment.LEFT_OUT, f"Buoyancy is that of the section, not {coefficients.buoyancy:g} times it.")
+    if coefficients.axial and np.ptp(member.sizes, axis=0).any():
         text = "The sides of a tapered member take the axial coefficients of its end, not AxCd and AxCa along it."
         say("AxCd, AxCa of members", Treatment.APPROXIMATED, text)
-    if own.diffracting:
+    if coefficients.diffracting:
         text = "`maccamy_fuchs: true`. OpenFAST drops the phase lag and second-order accelerations; here both are kept."
         say("MCF", Treatment.APPROXIMATED, text)
     if member.row.whole("MHstLMod", 1) == 0 and not member.potential:
@@ -109,13 +109,13 @@ def _tell(member: HydroDynMember, own: MemberCoefficients, notes: MemberNotes) -
     if member.shape == "rect" and (mode := member.row.whole("FDMod", 0)):
         text = "Drag by the flow at four faces, and its filter, has no counterpart; the vector of the flow decides here."
         say(f"FDMod {mode}", Treatment.APPROXIMATED, text)
-    if (own.drag < 0).any() or (own.mass < 0).any():
-        raise member.row.wrong("coefficients >= 0", f"{min(own.drag.min(), own.mass.min()):g}")
+    if (coefficients.drag < 0).any() or (coefficients.mass < 0).any():
+        raise member.row.wrong("coefficients >= 0", f"{min(coefficients.drag.min(), coefficients.mass.min()):g}")
 
 
-def _across(member: HydroDynMember, own: MemberCoefficients, notes: MemberNotes) -> dict[str, float]:
+def _across(member: HydroDynMember, coefficients: MemberCoefficients, notes: MemberNotes) -> dict[str, float]:
     """Ca and Cd across a member, on displaced volume and on its sides."""
-    drag, mass = own.drag.copy(), np.zeros(2) if member.potential else own.mass.copy()
+    drag, mass = coefficients.drag.copy(), np.zeros(2) if member.potential else coefficients.mass.copy()
     if member.shape == "rect":
         ratios = member.sizes[:, 1] / member.sizes[:, 0]
         if np.ptp(ratios) > _SAME * ratios.max():
@@ -124,63 +124,63 @@ def _across(member: HydroDynMember, own: MemberCoefficients, notes: MemberNotes)
         ratio = float(member.sizes[:, 1].mean() / member.sizes[:, 0].mean())
         mass = mass * math.pi / 4 * np.array([ratio, 1 / ratio])
     if is_column(member):
-        for what, pair in (("CdA, CdB", drag), ("CaA, CaB", mass)):
+        for keys, pair in (("CdA, CdB", drag), ("CaA, CaB", mass)):
             if np.ptp(pair) > _SAME * pair.max():
                 text = "A steep member has one coefficient for both directions: the mean of both was taken."
-                notes.add(member.number, what, Treatment.APPROXIMATED, text)
+                notes.add(member.number, keys, Treatment.APPROXIMATED, text)
         return {"Ca_t": tidy(float(mass.mean())), "Cd_t": tidy(float(drag.mean()))}
     return {"Ca_t": tidy(float(mass[0])), "Ca_z": tidy(float(mass[1])), "Cd_t": tidy(drag[0]), "Cd_z": tidy(drag[1])}
 
 
 def _place(
     member: HydroDynMember,
-    own: MemberCoefficients,
+    coefficients: MemberCoefficients,
     ends: dict[tuple[int, int], EndCoefficients],
     hull: ConvertedHull,
     notes: MemberNotes,
 ) -> None:
     """Add a member, in two halves where its ends have different coefficients."""
-    across = _across(member, own, notes)
+    across = _across(member, coefficients, notes)
     if not is_column(member):
-        _add(hull, member, own, f"member{member.number}", hull.group("pontoon", across), (0.0, 1.0))
+        _add(hull, member, coefficients, f"member{member.number}", hull.group("pontoon", across), (0.0, 1.0))
         return
     mine = [ends.get((member.number, end)) for end in (0, 1)]
-    stated = [one for one in mine if one is not None]
+    stated = [axial for axial in mine if axial is not None]
     if len(stated) == 2 and stated[0] != stated[1]:
         text = "Its ends have different axial coefficients: it is cut into halves at its middle."
         notes.add(member.number, "JointAxID", Treatment.TAKEN, text)
-        for name, one, span in (("lower", stated[0], (0.0, 0.5)), ("upper", stated[1], (0.5, 1.0))):
-            group = hull.group("column", _with_ends(across, one))
-            _add(hull, member, own, f"member{member.number}_{name}", group, span)
+        for name, axial, span in (("lower", stated[0], (0.0, 0.5)), ("upper", stated[1], (0.5, 1.0))):
+            group = hull.group("column", _with_ends(across, axial))
+            _add(hull, member, coefficients, f"member{member.number}_{name}", group, span)
         return
     group = hull.group("column", _with_ends(across, stated[0] if stated else EndCoefficients(0.0, 0.0, None)))
-    _add(hull, member, own, f"member{member.number}", group, (0.0, 1.0))
+    _add(hull, member, coefficients, f"member{member.number}", group, (0.0, 1.0))
 
 
 def _with_ends(across: dict[str, float], end: EndCoefficients) -> dict[str, Any]:
     law = {} if end.law is None else {"drag_z": end.law}
-    found = {"Ca_t": across["Ca_t"], "Ca_z": tidy(end.mass), "Cd_t": across["Cd_t"], "Cd_z": tidy(end.drag)}
-    return found | law
+    entries = {"Ca_t": across["Ca_t"], "Ca_z": tidy(end.mass), "Cd_t": across["Cd_t"], "Cd_z": tidy(end.drag)}
+    return entries | law
 
 
 def _add(
     hull: ConvertedHull,
     member: HydroDynMember,
-    own: MemberCoefficients,
+    coefficients: MemberCoefficients,
     name: str,
     group: str,
     span: tuple[float, float],
 ) -> None:
-    low, high = (joint.place for joint in member.joints)
-    points = [low + at * (high - low) for at in span]
-    sizes = [member.sizes[0] + at * (member.sizes[1] - member.sizes[0]) for at in span]
+    low, high = (joint.position for joint in member.joints)
+    points = [low + fraction * (high - low) for fraction in span]
+    sizes = [member.sizes[0] + fraction * (member.sizes[1] - member.sizes[0]) for fraction in span]
     listed = [[tidy(size[0])] if member.shape == "circ" else [tidy(value) for value in size] for size in sizes]
-    plain = [one[0] if member.shape == "circ" else one for one in listed]
+    plain = [size[0] if member.shape == "circ" else size for size in listed]
     entry: dict[str, Any] = {"name": name, "group": group, "shape": member.shape}
     entry |= {"d": plain[0]} if plain[0] == plain[1] else {"stations": [0.0, 1.0], "d": plain}
     entry |= {"rA": [tidy(value) for value in points[0]], "rB": [tidy(value) for value in points[1]]}
     if member.spin:
         entry["gamma"] = tidy(member.spin)
     if hull.diffracting:
-        entry["maccamy_fuchs"] = own.diffracting and member.shape == "circ" and not member.potential
+        entry["maccamy_fuchs"] = coefficients.diffracting and member.shape == "circ" and not member.potential
     hull.members.append(entry)
