@@ -48,8 +48,8 @@ def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple
         warnings.append(f"the fit of {source} did not converge")
     if used.platform and used.platform != name:
         warnings.append(f"{source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
-    if said := "" if used.seas is None else non_default_options(used.seas):
-        warnings.append(f"in the seas of its campaign {source} has {said}; waves here are as options say")
+    if options := "" if used.seas is None else non_default_options(used.seas):
+        warnings.append(f"in the seas of its campaign {source} has {options}; waves here are as options say")
     if used.undetermined:
         warnings.append(f"among the calibrated values the records did not determine {', '.join(used.undetermined)}")
     return used.model, UsedCalibration(used.values, used.reference, warnings, used.strips)

@@ -64,7 +64,10 @@ def _off(variable: str) -> bool:
 
 
 def _keep_programs() -> None:
-    """Keep compiled programs on disk: in the user's cache folder, else in ~/.cache/jaxhydro/xla if that can be written."""
+    """Keep compiled programs on disk, unless their folder cannot be written.
+
+    It is the folder of JAX's own setting, else `jaxhydro/xla` in the user's cache folder (~/.cache).
+    """
     import jax
 
     if not _setting("jax_enable_compilation_cache"):
@@ -73,8 +76,8 @@ def _keep_programs() -> None:
         home = os.environ.get("XDG_CACHE_HOME") or "~/.cache"
         try:
             # JAX reads the variable itself, but only when it is imported
-            own = os.environ.get("JAX_COMPILATION_CACHE_DIR")
-            folder = Path(own or Path(home).expanduser() / "jaxhydro" / "xla")
+            chosen = os.environ.get("JAX_COMPILATION_CACHE_DIR")
+            folder = Path(chosen or Path(home).expanduser() / "jaxhydro" / "xla")
             folder.mkdir(parents=True, exist_ok=True)
         except (OSError, RuntimeError):  # RuntimeError: there is no home folder
             return

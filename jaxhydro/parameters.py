@@ -58,8 +58,8 @@ class Parameter(NamedTuple):
         least = 0.0 if self.lower >= 0 else -math.inf
         if not (np.isfinite(numbers) & (numbers >= least)).all():
             expected = "a finite number" if least < 0 else "a finite number of 0 or more"
-            found = ", ".join(f"{one:g}" for one in numbers.ravel()[:3])
-            raise ValueError(f"{label}: expected {expected} ({self.unit}: {self.meaning}), found {found}")
+            values = ", ".join(f"{number:g}" for number in numbers.ravel()[:3])
+            raise ValueError(f"{label}: expected {expected} ({self.unit}: {self.meaning}), found {values}")
 
     def sized(self, size: float, pace: float) -> "Parameter":
         """The parameter with bounds for a platform of another size.
@@ -133,8 +133,8 @@ def _numbers(values: Mapping[Any, Any]) -> dict[Any, Float[Array, ""]]:
     return {key: jnp.asarray(value, float) for key, value in values.items()}
 
 
-class _Place(NamedTuple):
-    """Field and key of a parameter, what is known of it, and the template of its label."""
+class _Slot(NamedTuple):
+    """Field and key of a parameter, its description, and the template of its label."""
 
     field: str
     key: Any
@@ -143,10 +143,11 @@ class _Place(NamedTuple):
 
 
 class AbstractEffect(eqx.Module):
-    """Base class of loads, water effects and sensor effects: named, bounded parameters of one physical effect.
+    """Base class of loads, water effects and sensor effects.
 
-    An effect knows nothing of batches, of the model around it or of calibration. Its parameters are the fields made by
-    `parameter` and `parameters`; the parameters of an effect that is a field are its own, too.
+    An effect is one physical effect with named, bounded parameters. It knows nothing of batches, of the model around it or
+    of calibration. Its parameters are the fields made by `parameter` and `parameters`. The parameters of an effect that is a
+    field are its own, too.
 
     Attributes:
         label_prefix: First part of the parameters' labels; empty: the class's name in words.
@@ -164,14 +165,14 @@ class AbstractEffect(eqx.Module):
     @property
     def values(self) -> dict[str, Float[Array, ""]]:
         """Every parameter by label."""
-        own = {label: _at(getattr(self, place.field), place.key) for label, place in self._places().items()}
+        own = {label: _at(getattr(self, slot.field), slot.key) for label, slot in self._slots().items()}
         return {label: value for inner in self._inner().values() for label, value in inner.values.items()} | own
 
     @property
     def keys(self) -> dict[str, Any]:
-        """Key of each parameter in the mapping that is its field, by label; None for a field that is one number."""
-        inner = {label: key for one in self._inner().values() for label, key in one.keys.items()}
-        return inner | {label: place.key for label, place in self._places().items()}
+        """Key of each parameter in its field's mapping, by label; None for a field that is one number."""
+        inner = {label: key for effect in self._inner().values() for label, key in effect.keys.items()}
+        return inner | {label: slot.key for label, slot in self._slots().items()}
 
     def about(self, label: str) -> Parameter:
         """Unit, meaning, bounds and neutral value of a parameter.
@@ -179,8 +180,8 @@ class AbstractEffect(eqx.Module):
         Raises:
             UnknownName: There is no parameter of that label (a KeyError).
         """
-        if (place := self._places().get(label)) is not None:
-            return place.about(self, place.key)
+        if (slot := self._slots().get(label)) is not None:
+            return slot.about(self, slot.key)
         for inner in self._inner().values():
             if label in inner.values:
                 return inner.about(label)
@@ -189,11 +190,11 @@ class AbstractEffect(eqx.Module):
     def at_values(self, values: Mapping[str, Float[Array, ""] | float]) -> Self:
         """This effect with some parameters changed, unchecked; labels of other effects are ignored."""
         new: dict[str, Any] = {name: inner.at_values(values) for name, inner in self._inner().items()}
-        for label, place in self._places().items():
-            if label in values and place.key is None:
-                new[place.field] = values[label]
+        for label, slot in self._slots().items():
+            if label in values and slot.key is None:
+                new[slot.field] = values[label]
             elif label in values:
-                new[place.field] = {**new.get(place.field, getattr(self, place.field)), place.key: values[label]}
+                new[slot.field] = {**new.get(slot.field, getattr(self, slot.field)), slot.key: values[label]}
         return replace(self, **new) if new else self
 
     def label_for(self, label: str, key: Any) -> str:
@@ -201,31 +202,31 @@ class AbstractEffect(eqx.Module):
         for inner in self._inner().values():
             if label in inner.values:
                 return inner.label_for(label, key)
-        place = self._places()[label]
-        return place.template.format(prefix=self.prefix, name=place.field, key=key)
+        slot = self._slots()[label]
+        return slot.template.format(prefix=self.prefix, name=slot.field, key=key)
 
     def restricted(self, keys: Collection[Any]) -> Self:
         """This effect with the parameters of some keys only, such as degrees of freedom; single numbers stay."""
         mappings = {field.name: getattr(self, field.name) for field in fields(self) if METADATA_KEY in field.metadata}
-        kept: dict[str, Any] = {
+        selected: dict[str, Any] = {
             name: {key: value for key, value in mapping.items() if key in keys}
             for name, mapping in mappings.items()
             if isinstance(mapping, Mapping)
         }
-        return replace(self, **kept)
+        return replace(self, **selected)
 
-    def _places(self) -> dict[str, _Place]:
-        """Where the parameters of this effect's own fields are, by label."""
-        found = {}
+    def _slots(self) -> dict[str, _Slot]:
+        """Fields and keys of the parameters of this effect's own fields, by label."""
+        slots = {}
         for field in fields(self):
-            if (of := field.metadata.get(METADATA_KEY)) is None:
+            if (metadata := field.metadata.get(METADATA_KEY)) is None:
                 continue
             value = getattr(self, field.name)
             for key in value if isinstance(value, Mapping) else (None,):
-                found[of.label.format(prefix=self.prefix, name=field.name, key=key)] = _Place(
-                    field.name, key, of.about, of.label
+                slots[metadata.label.format(prefix=self.prefix, name=field.name, key=key)] = _Slot(
+                    field.name, key, metadata.about, metadata.label
                 )
-        return found
+        return slots
 
     def _inner(self) -> dict[str, "AbstractEffect"]:
         """Effects that are fields of this one, by field."""

@@ -1,4 +1,7 @@
-"""Fewer and quicker compilations: jit for programs that run a few times or in threads, and arrays without a program."""
+"""Fewer and quicker compilations, and arrays without a compiled program.
+
+The jit functions are for programs that run a few times, or in threads.
+"""
 
 import threading
 from collections.abc import Callable, Hashable
@@ -32,8 +35,8 @@ def quick_jit(fun: Callable[P, R]) -> Callable[P, R]:
     def compiled(*args: P.args, **kwargs: P.kwargs) -> R:
         fresh = jnp.zeros(())  # a tracer where a program is traced
         traced = any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves((fresh, args, kwargs)))
-        found: R = (within if traced else alone)(*args, **kwargs)
-        return found
+        result: R = (within if traced else alone)(*args, **kwargs)
+        return result
 
     return compiled
 
@@ -57,9 +60,9 @@ def jit_once(fun: Callable[P, R]) -> Callable[P, R]:
         if key in compiled:
             return jitted(*args, **kwargs)
         with lock:
-            found = jitted(*args, **kwargs)
+            result = jitted(*args, **kwargs)
             compiled.add(key)
-        return found
+        return result
 
     return alone_at_first
 

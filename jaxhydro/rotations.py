@@ -1,7 +1,7 @@
 """Finite rotations of the platform, and small smooth functions that loads share.
 
-Attitude is roll, pitch, yaw with R = Rz(yaw) Ry(pitch) Rx(roll) taking body axes to earth axes (Fossen 2011, Handbook of
-Marine Craft Hydrodynamics and Motion Control, section 2.2). It is singular at 90 degrees of pitch.
+Attitude is roll, pitch, yaw. R = Rz(yaw) Ry(pitch) Rx(roll) takes body axes to earth axes (Fossen 2011, Handbook of Marine
+Craft Hydrodynamics and Motion Control, section 2.2). It is singular at 90 degrees of pitch.
 """
 
 import jax

@@ -35,10 +35,10 @@ def pace_of(size: Any, gravity: Any) -> Any:
 
 
 def entered(depth: Float[Array, "..."], width: Float[Array, ""] | float) -> Float[Array, "..."]:
-    """Submerged length (m) of what ends at a `depth` (m) below the surface: the depth, or 0 above.
+    """Submerged length (m) of a body that ends at a `depth` (m) below the surface.
 
-    Within `width` (m) below the surface the two are joined smoothly, twice continuously differentiable. An end at the
-    surface or above has not entered at all; one deeper than `width` is exact.
+    It is the depth, or 0 above. Within `width` (m) below the surface the two are joined smoothly, twice continuously
+    differentiable. An end at the surface or above has not entered at all; one deeper than `width` is exact.
     """
     x = depth / width
     inner = x.clip(0.0, 1.0)

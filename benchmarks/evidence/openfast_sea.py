@@ -157,7 +157,7 @@ class GridSea(jh.AbstractSea):
 
     def flow(self, time: jax.Array, points: jax.Array, cylinders: Cylinders | None = None) -> Flow:
         at, weights = self._around(points)
-        four = None if cylinders is None else dataclasses.replace(cylinders, of=cylinders.of * 4)
+        four = None if cylinders is None else dataclasses.replace(cylinders, radius_index=cylinders.radius_index * 4)
         return jax.tree.map(lambda field: self._mixed(field, weights), self.inner.flow(time, at, four).earth())
 
 

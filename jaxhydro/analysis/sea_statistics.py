@@ -109,9 +109,9 @@ def tables(document: Mapping[str, Any]) -> tuple[tuple[tuple[str, ...], list[tup
             continue
         cells = []
         for name in ("low_frequency", "wave_frequency"):
-            one = document["bands"][channel].get(name)
-            share = one and one["integral"] / deviation**2
-            cells += [_band(one["band"]), _number(one["integral"]), f"{share:.0%}"] if one else ["-", "-", "-"]
+            band = document["bands"][channel].get(name)
+            share = band and band["integral"] / deviation**2
+            cells += [_band(band["band"]), _number(band["integral"]), f"{share:.0%}"] if band else ["-", "-", "-"]
         energy.append((f"{channel} ({numbers['unit']}²)", *cells))
     of_bands = ("Low frequency (Hz)", "Integral", "of all", "Wave frequency (Hz)", "Integral", "of all")
     return (("Channel", *PRINTED_HEADINGS), rows), (("Channel", *of_bands), energy)

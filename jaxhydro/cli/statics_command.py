@@ -14,7 +14,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.static_forces import LineState, forces_by_load, line_states, mooring_stiffness, offset_curve
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
-from jaxhydro.loads import AnyLines
+from jaxhydro.loads import AbstractLines
 from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import load_platform
@@ -111,7 +111,7 @@ def _print_stiffness(model: Model, position: Float[Array, "6"]) -> None:
     total = np.asarray(linearised(model, position)[1])
     size, letter = _prefix(total.flat)
     parts = {f"Stiffness at rest ({letter}N/m, {letter}N, {letter}N m)": total}
-    if any(isinstance(load, AnyLines) for load in model.loads):
+    if any(isinstance(load, AbstractLines) for load in model.loads):
         parts["Stiffness of the mooring lines alone, earth axes"] = np.asarray(mooring_stiffness(model, position))
     for title, stiffness in parts.items():
         matrix = stiffness / size

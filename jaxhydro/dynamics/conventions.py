@@ -1,4 +1,4 @@
-"""Conventions of a strip model: wetting, diffraction, axes of strips, place of the waves."""
+"""Conventions of a strip model: wetting, diffraction, axes of strips, position of the waves."""
 
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, get_args, get_type_hints
@@ -15,7 +15,7 @@ class Conventions:
 
     Attributes:
         wetting: Which part of the members is loaded. "instantaneous": up to the water surface at the displaced strip.
-            "mean": what is under still water at the upright reference position, in the flow at that depth.
+            "mean": the part under still water at the upright reference position, in the flow at that depth.
         diffraction: Wave diffraction by the members that diffract. "maccamy_fuchs"; "ramp", the same but with coefficients
             tuned away from Ca = 1 kept in long waves (`diffraction.long_waves`); "none".
         directions: Axes of strips and ends. "body": of the displaced member. "earth": of the undisplaced one, as in

@@ -46,9 +46,9 @@ class Grid(eqx.Module):
             times: Times (s), (t,).
             dofs: Degrees of freedom that are returned.
         """
-        place = (times - self.start) / self.step
-        index = jnp.clip(jnp.floor(place).astype(int), 0, self.count - 1)
-        s = (place - index)[:, None]
+        steps = (times - self.start) / self.step
+        index = jnp.clip(jnp.floor(steps).astype(int), 0, self.count - 1)
+        s = (steps - index)[:, None]
         s = jnp.where(s < 0, 0.0, jnp.where(s > 1, 1.0, s))  # jnp.clip has half the slope where a time is a step's
         h = self.step
         position, rate, acceleration = (x[:, dofs] for x in (self.position, self.rate, self.acceleration))

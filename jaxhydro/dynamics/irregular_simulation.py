@@ -144,8 +144,8 @@ def simulate_irregular(
         )
         return IrregularSimulation(response, grid, met, duration / steps, steps)
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
-    points, own = model.hull.extremities(), excursion_of(model)
-    excursion = own
+    points, first_excursion = model.hull.extremities(), excursion_of(model)
+    excursion = first_excursion
     computed: Any = {"transfer": model.transfer, "exciting": model.excitation}
     while True:
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, **computed)
@@ -154,9 +154,9 @@ def simulate_irregular(
         reached = float(_farthest(response.position, jnp.asarray(points), box))
         if not reached + margin > prepared.half:
             return IrregularSimulation(response, grid, prepared, step, steps)
-        if reached > prepared.half + 10 * own:
+        if reached > prepared.half + 10 * first_excursion:
             raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
-        excursion += reached + margin - prepared.half + 0.5 * own
+        excursion += reached + margin - prepared.half + 0.5 * first_excursion
 
 
 def farthest(position: Float[Array, "t 6"], points: Float[Array, "3 p"], sea: SupportSea) -> Float[Array, ""]:
@@ -167,8 +167,8 @@ def farthest(position: Float[Array, "t 6"], points: Float[Array, "3 p"], sea: Su
         points: Extremities of the hull (m), (3, p).
         sea: The prepared sea.
     """
-    place = jax.vmap(lambda q: sea.along @ (q[:2, None] + rotation(q[3:])[:2] @ points) - sea.middle)(position)
-    return jnp.abs(place).max()
+    along = jax.vmap(lambda q: sea.along @ (q[:2, None] + rotation(q[3:])[:2] @ points) - sea.middle)(position)
+    return jnp.abs(along).max()
 
 
 _farthest = eqx.filter_jit(farthest)

@@ -132,7 +132,11 @@ def instant(
 def _origin(
     position: Float[Array, "6"], matrix: Float[Array, "3 3"], conventions: Conventions
 ) -> tuple[Float[Array, "2"], Float[Array, "2 3"]]:
-    """Horizontal place (m) where the platform meets the waves, and the map of its points to horizontal ones."""
+    """Horizontal position where the platform meets the waves, and the map of its points.
+
+    Returns:
+        Position (m), (2,), and the matrix from the platform's points to horizontal ones, (2, 3).
+    """
     if conventions.waves_at == "displaced":
         return position[:2], matrix[:2]
     return jnp.zeros(2), jnp.eye(3)[:2]
@@ -151,8 +155,8 @@ def _submerged(
         return _wetted_at_rest(hull)
     roots, vertical = _roots(hull), matrix[2]
     depth = -(position[2] + vertical @ roots)
-    place, follows = _origin(position, matrix, conventions)
-    surface = sea.surface(time, place[:, None] + follows @ hull.gauges)
+    origin, follows = _origin(position, matrix, conventions)
+    surface = sea.surface(time, origin[:, None] + follows @ hull.gauges)
     depth = depth if surface is None else depth + surface[jnp.array(hull.gauge_of, dtype=int)]
     return _wetted(hull, vertical, depth)
 
@@ -170,8 +174,8 @@ def _wetted_at_rest(hull: Hull) -> _Submerged:
 def _wetted(hull: Hull, vertical: Float[Array, "3"], depth: Float[Array, " k"]) -> _Submerged:
     """Submerged part of the hull, with the vertical in body axes and the depths of `_roots` (m)."""
     strips, ends, count = hull.strips, hull.ends, hull.elements.start.shape[1]
-    elements, of = hull.wetted(vertical, depth[:count]), jnp.array(strips.element, dtype=int)
-    covered, reach = elements.length[of] * strips.weight, elements.reach[of] * strips.fraction
+    elements, element_of = hull.wetted(vertical, depth[:count]), jnp.array(strips.element, dtype=int)
+    covered, reach = elements.length[element_of] * strips.weight, elements.reach[element_of] * strips.fraction
     wet = jnp.concatenate([hull.ends_wetted(depth[count:]), jnp.ones(len(ends.strip))])
     return _Submerged(elements, covered, reach, strips.size + strips.taper * reach, wet)
 
@@ -195,7 +199,12 @@ def _lines(
 
 
 def _along(field: Float[Array, "3 p"], hull: Hull) -> Float[Array, " l"]:
-    """Components along all lines, (l,), of a vector field (body axes) at `_points`, or of one vector everywhere (3, 1)."""
+    """Components of a vector field along all lines, (l,).
+
+    Args:
+        field: Vectors at `_points`, (3, p), or one vector everywhere, (3, 1), body axes.
+        hull: The hull.
+    """
     on_strips = on_ends = field
     if field.shape[1] > 1:
         n, whole = len(hull.strips.element), hull.ends_without_faces

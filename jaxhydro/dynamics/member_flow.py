@@ -20,9 +20,9 @@ def flow_past(
         matrix: Rotation from body to earth axes.
         hull: The hull.
     """
-    own, own_end = hull.split(still)
+    still_strips, still_ends = hull.split(still)
     if flow is None:
-        return StripFlow(own, None), EndFlow(own_end, None, None, wet)
+        return StripFlow(still_strips, None), EndFlow(still_ends, None, None, wet)
     ends, n, whole = hull.ends, len(hull.strips.element), hull.ends_without_faces
     axes = matrix if flow.axes is None else flow.axes.T @ matrix
     toward = (axes @ hull.strips.directions.reshape(3, 2 * n)).reshape(len(axes), 2, n)
@@ -32,10 +32,12 @@ def flow_past(
         return (toward * field[:, None, :n]).sum(axis=0)
 
     diffracted, tuned = (None if field is None else across(field) for field in (flow.diffracted, flow.tuned))
-    strips = StripFlow(own + across(flow.velocity), across(flow.acceleration), diffracted, tuned, flow.pressure[:n])
-    at = jnp.concatenate([jnp.arange(n, n + whole), jnp.array(ends.strip, dtype=int)]) if ends.strip else slice(n, n + whole)
-    velocity, acceleration = ((toward_end * field[:, at]).sum(axis=0) for field in (flow.velocity, flow.acceleration))
-    return strips, EndFlow(own_end + velocity, acceleration, flow.pressure[at], wet)
+    strips = StripFlow(still_strips + across(flow.velocity), across(flow.acceleration), diffracted, tuned, flow.pressure[:n])
+    end_index = (
+        jnp.concatenate([jnp.arange(n, n + whole), jnp.array(ends.strip, dtype=int)]) if ends.strip else slice(n, n + whole)
+    )
+    velocity, acceleration = ((toward_end * field[:, end_index]).sum(axis=0) for field in (flow.velocity, flow.acceleration))
+    return strips, EndFlow(still_ends + velocity, acceleration, flow.pressure[end_index], wet)
 
 
 def flow_past_slender(

@@ -1,4 +1,7 @@
-"""Model of a platform: a rigid body, its loads, water effects and sensor effects, (M + sum A_k) dv/dt = sum F_k."""
+"""Model of a platform: a rigid body, its loads, water effects and sensor effects.
+
+The equation of motion is (M + sum A_k) dv/dt = sum F_k.
+"""
 
 import dataclasses
 from collections.abc import Mapping
@@ -131,24 +134,30 @@ class Model(eqx.Module):
         """
         for effect in self.effects:
             if label in effect.values:
-                found = effect.about(label).sized(float(self.size), float(self.pace))
+                parameter = effect.about(label).sized(float(self.size), float(self.pace))
                 shares = self.hull.elements.shares
-                others = [share.group for share in shares if (share.owner, share.name) == found.coefficient]
-                return found._replace(meaning=f"{found.meaning}; shared by {', '.join(others)}") if others else found
+                others = [share.group for share in shares if (share.owner, share.name) == parameter.coefficient]
+                return (
+                    parameter._replace(meaning=f"{parameter.meaning}; shared by {', '.join(others)}") if others else parameter
+                )
         raise self._unknown(label)
 
     def _unknown(self, label: str) -> UnknownName:
         return unknown("parameter", label, sorted(self.values), self.shared_hint(label))
 
     def shared_hint(self, label: str) -> str:
-        """Hint for what would be the label of a coefficient that its group shares: the label it has; empty for others."""
+        """Hint that a coefficient is shared, with the label that it has; empty for other labels.
+
+        Args:
+            label: Label that the coefficient would have in a group that shares it.
+        """
         for effect in self.effects if self.hull.elements.shares else ():
-            for own, key in effect.keys.items():
-                coefficient = effect.about(own).coefficient
+            for owner_label, key in effect.keys.items():
+                coefficient = effect.about(owner_label).coefficient
                 for share in self.hull.elements.shares:
                     shared = (share.owner, share.name) == coefficient
-                    if shared and effect.label_for(own, (share.group, key[1])) == label:
-                        return f"It is shared: {own}."
+                    if shared and effect.label_for(owner_label, (share.group, key[1])) == label:
+                        return f"It is shared: {owner_label}."
         return ""
 
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
@@ -175,7 +184,13 @@ class Model(eqx.Module):
         return self.at_values(values)
 
     def at_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
-        """This model with some parameters changed, unchecked: fitted values may exceed a physical limit by rounding."""
+        """This model with some parameters changed, without checks.
+
+        Fitted values may exceed a physical limit by rounding.
+
+        Args:
+            values: Values by label.
+        """
         loads = tuple(load.at_values(values) for load in self.loads)
         water = tuple(effect.at_values(values) for effect in self.water)
         sensors = tuple(effect.at_values(values) for effect in self.sensors)
@@ -209,7 +224,11 @@ class Model(eqx.Module):
 
     @property
     def transfer(self) -> AnyTransfer | None:
-        """Difference-frequency transfer function with which irregular seas are prepared, or None; ValueError for two."""
+        """Difference-frequency transfer function with which irregular seas are prepared, or None.
+
+        Raises:
+            ValueError: Two loads have one.
+        """
         tables = [load.transfer_function() for load in self.loads]
         return cast(AnyTransfer | None, at_most_one("difference-frequency transfer function", tables))
 
@@ -244,7 +263,10 @@ class Model(eqx.Module):
         return position
 
     def clock_lag(self) -> Float[Array, ""] | None:
-        """Lag (s) of the recorded motions behind the waves, or None: the record at t shows the motion at t - lag."""
+        """Lag (s) of the recorded motions behind the waves, or None.
+
+        The record at t shows the motion at t - lag.
+        """
         return optional_sum([effect.clock_lag() for effect in self.sensors])
 
     def rest(self) -> State:
@@ -273,7 +295,7 @@ class Model(eqx.Module):
             forces_at_rest=self._forces_at_rest,
             second_order=optional_sum([load.second_order_share() for load in self.loads]),
             fast_displacement=optional_sum(
-                [load.fast_displacement(of) for load, of in zip(self.loads, state.memory, strict=True)]
+                [load.fast_displacement(memory) for load, memory in zip(self.loads, state.memory, strict=True)]
             ),
         )
 

@@ -45,8 +45,8 @@ class Modes(NamedTuple):
         """
         if dof not in DOFS:
             raise unknown("degree of freedom", dof, DOFS)
-        at = self.number(dof)
-        return float("nan") if at is None else float(self.period[at])
+        index = self.number(dof)
+        return float("nan") if index is None else float(self.period[index])
 
     def __repr__(self) -> str:
         """Natural periods by motion."""
@@ -74,7 +74,7 @@ def strain_energy(stiffness: Float[Array, "6 6"], vectors: Float[Array, "6 m"]) 
     """Fraction of each degree of freedom in the potential energy of modes, (6, m).
 
     It does not depend on units, and hardly on the height of the reference point. A spar that pitches about a point far below
-    still water moves the reference point by more than its angle, but only the angle is restored.
+    still water moves the reference point by more than its angle. Only the angle is restored.
 
     Args:
         stiffness: Stiffness matrix, (6, 6).
@@ -106,15 +106,15 @@ def modes_of(
     square, vectors = square.real[order], vectors.real[:, order]
     largest = np.abs(square).max()
     _with_memories(memories, scale, mass, stiffness, square, vectors)
-    kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
-    vectors[:, kept] = _one_motion_each(square[kept], vectors[:, kept], scale)
-    share = strain_energy(on_device(stiffness), on_device(vectors[:, kept]))
+    oscillates, falls = square > 1e-10 * largest, square < -1e-6 * largest
+    vectors[:, oscillates] = _one_motion_each(square[oscillates], vectors[:, oscillates], scale)
+    share = strain_energy(on_device(stiffness), on_device(vectors[:, oscillates]))
     motion = tuple(DOFS[int(i)] for i in np.argmax(np.asarray(share), axis=0))
     vectors = vectors * scale[:, None]
-    shape = vectors[:, kept].T
+    shape = vectors[:, oscillates].T
     shape = shape / np.abs(shape).max(axis=1, keepdims=True)
     unstable = sorted({int(np.argmax(np.abs(vector))) for vector in vectors[:, falls].T})
-    return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable), motion)
+    return Modes(2 * np.pi / np.sqrt(square[oscillates]), shape, tuple(DOFS[i] for i in unstable), motion)
 
 
 def _with_memories(
@@ -145,11 +145,13 @@ def _with_memories(
             omega = float(np.sqrt(square[i]))
             response = sum(np.asarray(load.retardation(omega)) for load in memories)
             values, shapes = np.linalg.eig(np.linalg.solve(mass + response.imag / omega, stiffness))
-            old, new = (scale[:, None] * one / np.linalg.norm(scale[:, None] * one, axis=0) for one in (vectors, shapes.real))
+            old, new = (
+                scale[:, None] * shape / np.linalg.norm(scale[:, None] * shape, axis=0) for shape in (vectors, shapes.real)
+            )
             alike = np.abs(old.T @ new)
             # of two modes with nearly one frequency, such as roll and pitch, each takes the shape that the other is less like
-            own = alike.argmax(axis=0) == i
-            same = int(np.argmax(np.where(own, alike[i], 0.0) if own.any() else alike[i]))
+            closest = alike.argmax(axis=0) == i
+            same = int(np.argmax(np.where(closest, alike[i], 0.0) if closest.any() else alike[i]))
             change = abs(values[same].real - square[i])
             square[i], vectors[:, i] = values[same].real, shapes[:, same].real
             if square[i] <= 0 or change < MODE_TOLERANCE * square[i]:

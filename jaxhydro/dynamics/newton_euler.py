@@ -94,13 +94,13 @@ def body_acceleration(body: RigidBody, velocity: Float[Array, "6"], total: LoadS
 
 def optional_sum(parts: Sequence[Array | None]) -> Array | None:
     """Sum of the terms that are not None; None where there are none."""
-    there = [part for part in parts if part is not None]
-    return sum(there[1:], there[0]) if there else None
+    terms = [part for part in parts if part is not None]
+    return sum(terms[1:], terms[0]) if terms else None
 
 
-def at_most_one(what: str, parts: Sequence[T | None]) -> T | None:
+def at_most_one(quantity: str, parts: Sequence[T | None]) -> T | None:
     """The term that is not None, or None; ValueError for two."""
-    found = [part for part in parts if part is not None]
-    if len(found) > 1:
-        raise ValueError(f"two loads have a {what}: expected one")
-    return found[0] if found else None
+    terms = [part for part in parts if part is not None]
+    if len(terms) > 1:
+        raise ValueError(f"two loads have a {quantity}: expected one")
+    return terms[0] if terms else None

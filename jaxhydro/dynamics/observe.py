@@ -21,9 +21,9 @@ def observe(
 ) -> Float[Array, "t 6"]:
     """Readings of the motion sensors, counted from their reading at the position `origin`.
 
-    reading(t) = seen(q(t - lag)) - seen(origin), with q the position of the reference point, `Model.seen` the point that is
-    tracked and `Model.clock_lag` the lag of the motions' clock behind that of the waves. In still water there is no other
-    clock, and the lag is left out: the release takes it up. Before its first and after its last step a motion is held.
+    reading(t) = seen(q(t - lag)) - seen(origin). Here q is the position of the reference point, and `Model.seen` the point
+    that is tracked. `Model.clock_lag` is the lag of the motions' clock behind that of the waves. In still water there is no
+    other clock, and the lag is left out: the release takes it up. Before its first and after its last step a motion is held.
 
     Args:
         model: Platform whose loads may include sensor effects.

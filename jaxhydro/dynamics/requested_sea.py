@@ -108,9 +108,16 @@ class RequestedSea:
 
     @classmethod
     def of_systems(cls, systems: tuple[WaveSystem, ...], **options: Any) -> "RequestedSea":
-        """Request for a sea of wave systems. Hs is that of all; period and heading are those of the highest system."""
-        highest = max(systems, key=lambda one: one.hs)
-        hs = math.sqrt(sum(one.hs**2 for one in systems))
+        """Request for a sea of wave systems.
+
+        Hs is that of all systems together. Period and heading are those of the highest system.
+
+        Args:
+            systems: The wave systems.
+            options: Other fields of the request.
+        """
+        highest = max(systems, key=lambda system: system.hs)
+        hs = math.sqrt(sum(system.hs**2 for system in systems))
         shape = "systems" if len(systems) > 1 else highest.spectrum
         gamma = None if len(systems) > 1 else highest.gamma
         return cls(hs=hs, tp=highest.tp, gamma=gamma, spectrum=shape, heading=highest.heading, systems=systems, **options)
@@ -135,8 +142,8 @@ class RequestedSea:
             step = float(np.median(np.diff(self.record.times)))
             usual = wave_bands.of_records([(self.record.elevation, step)], pace)
         else:
-            peaks = [one.tp for one in self.systems] or ([] if self.tp is None else [self.tp])
-            weights = [one.hs**2 for one in self.systems] or None
+            peaks = [system.tp for system in self.systems] or ([] if self.tp is None else [self.tp])
+            weights = [system.hs**2 for system in self.systems] or None
             usual = wave_bands.of_spectra(peaks, pace, weights) if peaks else wave_bands.at_pace(pace)
-        low, cutoff = (found if given is None else given for given, found in zip((self.low, self.cutoff), usual))
+        low, cutoff = (default if limit is None else limit for limit, default in zip((self.low, self.cutoff), usual))
         return low, cutoff

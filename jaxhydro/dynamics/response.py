@@ -49,7 +49,10 @@ class Response(eqx.Module):
         return self.position[..., DOFS.index(dof)]
 
     def __repr__(self) -> str:
-        """Duration, step and range of each motion; shapes where there are several motions, or none is computed yet."""
+        """Duration, step and range of each motion.
+
+        Shapes where there are several motions, or none is computed yet.
+        """
         from jaxhydro.display.summaries import response_summary
 
         return response_summary(self) if self._is_motion() else eqx.Module.__repr__(self)

@@ -23,24 +23,27 @@ def rest_remarks(model: Model, rest: Float[Array, "6"]) -> list[Remark]:
         model: The platform.
         rest: Position of rest (m, rad), (6,).
     """
-    at = np.asarray(rest)
+    position = np.asarray(rest)
     lowest = float(np.min(np.asarray(model.hull.extremities())[2], initial=0.0))
-    found = []
-    if lowest < 0 and abs(at[2]) > -MAX_REST_HEAVE * lowest:
+    remarks = []
+    if lowest < 0 and abs(position[2]) > -MAX_REST_HEAVE * lowest:
         vertical = {name: float(force[2]) / 1e6 for name, force in forces_by_load(model, jnp.zeros(6)).items() if force[2]}
         sums = ", ".join(f"{name} {value:+.5g} MN" for name, value in vertical.items())
-        where = f"{abs(at[2]):.3g} m {'above' if at[2] > 0 else 'below'} the reference position"
-        found.append(Remark(f"the platform rests {where}. Vertical forces there: {sums}", warning=True))
+        where = f"{abs(position[2]):.3g} m {'above' if position[2] > 0 else 'below'} the reference position"
+        remarks.append(Remark(f"the platform rests {where}. Vertical forces there: {sums}", warning=True))
     for i in (3, 4):
-        if abs(at[i]) > MAX_REST_TILT:
-            angle = math.degrees(at[i])
+        if abs(position[i]) > MAX_REST_TILT:
+            angle = math.degrees(position[i])
             text = f"the platform rests with a {DOFS[i]} of {angle:.3g} deg: check centre of mass and ballast"
-            found.append(Remark(text, warning=True))
-    return found
+            remarks.append(Remark(text, warning=True))
+    return remarks
 
 
 def wave_remarks(model: Model) -> list[Remark]:
-    """Warning where no load of the model takes anything from waves: no strips, no excitation or drift table."""
+    """Warning where waves act on no load of the model.
+
+    Such a model has no strips, and no excitation or drift table.
+    """
     drifts = any(isinstance(load, WaveDrift) for load in model.loads)
     if model.hull.strips.element or drifts or model.excitation is not None or model.transfer is not None:
         return []

@@ -47,7 +47,7 @@ class BuiltSea(NamedTuple):
 
     Attributes:
         sea: The sea.
-        about: What is written about it.
+        about: Description that is written with the results.
         target: Spectrum asked for, from Hz to m²/Hz; None for a record.
         notes: Notes on the sea.
     """
@@ -101,8 +101,8 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
     sea = IrregularSea(waves, model.environment, 1 if asked.order == 1 else 2, asked.stretching)  # type: ignore[arg-type]
     if asked.record is not None:
         record = asked.record
-        left = record.elevation - record.elevation.mean() - sea.gauge(record.times, record.position)
-        about["share_of_record"] = 1 - float(np.var(left) / np.var(record.elevation))
+        residual = record.elevation - record.elevation.mean() - sea.gauge(record.times, record.position)
+        about["share_of_record"] = 1 - float(np.var(residual) / np.var(record.elevation))
         if about["share_of_record"] < NOTED_SHARE:
             notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
     return BuiltSea(sea, about, target, notes)
@@ -119,9 +119,9 @@ def _check_directional(model: Model, asked: RequestedSea, waves: Components) -> 
 
 def outside(model: Model, sea: IrregularSea, about: dict[str, Any]) -> list[Remark]:
     """Remarks on energy outside the model's tables; `about` gets it too."""
-    found = outside_tables(model, sea.components)
-    about |= {f"share_outside_{one.key}": share for one, share in found.items()}
-    return [remark for one, share in found.items() if (remark := one.remark(share)) is not None]
+    shares = outside_tables(model, sea.components)
+    about |= {f"share_outside_{table.key}": share for table, share in shares.items()}
+    return [remark for table, share in shares.items() if (remark := table.remark(share)) is not None]
 
 
 def usual_cutoff(height: float, gravity: float) -> float:
@@ -188,14 +188,14 @@ def _from_spectrum(
     if asked.measured is not None:
         about |= {"directional_spectrum": asked.measured.source, "x_bearing": asked.measured.x_bearing}
     elif len(asked.systems) > 1 or not asked.long_crested:
-        about["systems"] = "; ".join(one.words for one in asked.systems)
+        about["systems"] = "; ".join(system.words for system in asked.systems)
     return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))
 
 
 def _from_record(model: Model, asked: RequestedSea, record: Record, notes: list[str]) -> tuple[Components, dict[str, Any]]:
     low, cutoff = asked.band(float(model.pace))
     try:
-        found = separated_record(
+        separation = separated_record(
             record.times,
             record.elevation,
             model.environment,
@@ -208,17 +208,19 @@ def _from_record(model: Model, asked: RequestedSea, record: Record, notes: list[
     except ValueError as error:
         option = "--cutoff" if "cutoff" in str(error) or "band" in str(error) else f"{record.source}: column {record.column}"
         raise impossible(option, error) from None
-    if found.mismatch > MAX_RECORD_MISMATCH:
-        missed = f"first and second order miss {found.mismatch:.1%} of the record in the band, and the nearest found is used"
+    if separation.mismatch > MAX_RECORD_MISMATCH:
+        missed = (
+            f"first and second order miss {separation.mismatch:.1%} of the record in the band, and the nearest found is used"
+        )
         notes.append(f"{missed}: a --cutoff below {cutoff:g}, or --order 1, follows it")
     step = float(record.times[-1] - record.times[0]) / (len(record.times) - 1)
-    return found.waves, {
+    return separation.waves, {
         "record": record.source,
         "record_column": record.column,
         "wave_position": list(record.position),
         "significant_wave_height": 4 * float(np.std(record.elevation)),
         "peak_period": record_peak_period(record.elevation, step, low, cutoff),
-        "mismatch": found.mismatch,
+        "mismatch": separation.mismatch,
     }
 
 

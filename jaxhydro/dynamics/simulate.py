@@ -87,8 +87,8 @@ def simulate(
     q, velocity = _initial_state(rest, by_name(position), by_name(rate))
     start = State(q, velocity, memory)
     if isinstance(sea, IrregularSea):
-        here = model.in_sea(state_of(sea.components))
-        return simulate_irregular(here, sea, start, times, step, method, adjoint, precision=precision).response
+        model_in_sea = model.in_sea(state_of(sea.components))
+        return simulate_irregular(model_in_sea, sea, start, times, step, method, adjoint, precision=precision).response
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / step - 1e-9))
     return simulate_steps(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint, precision)[0]

@@ -18,7 +18,7 @@ def inverse6(matrix: Float[Array, "6 6"]) -> Float[Array, "6 6"]:
     """Inverse of a symmetric positive definite 6 x 6 matrix from its 3 x 3 blocks.
 
     Golub and Van Loan 2013, Matrix Computations, section 3.2.11. As elementwise arithmetic it compiles and runs several
-    times faster inside a time loop than a call of LAPACK, which also makes a Jacobian through it slow to compile.
+    times faster inside a time loop than a call of LAPACK. Such a call also makes a Jacobian through it slow to compile.
     """
     a, b, d = matrix[:3, :3], matrix[:3, 3:], matrix[3:, 3:]
     ia = _inverse3(a)

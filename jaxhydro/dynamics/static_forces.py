@@ -14,8 +14,9 @@ from jaxhydro.dynamics.newton_euler import sum_of_loads
 from jaxhydro.dynamics.state import State
 from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
-from jaxhydro.loads import AnyLines
+from jaxhydro.loads import AbstractLines
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
+from jaxhydro.loads.mooring_lines import MooringLines
 from jaxhydro.loads.stiffness import Stiffness
 from jaxhydro.loads.tension_table_lines import TensionTableLines
 from jaxhydro.quick_jit import quick_jit
@@ -34,12 +35,12 @@ def forces_by_load(model: Model, position: Float[Array, "6"]) -> dict[str, np.nd
         Force and moment about the reference point in earth axes (N, N m), (6,), by name of load, such as "mooring lines".
         Loads of one name are added. Loads without a static force are left out.
     """
-    found: dict[str, np.ndarray] = {}
+    forces: dict[str, np.ndarray] = {}
     for load, force in zip(model.loads, np.asarray(_forces(model, jnp.asarray(position)))):
         if force.any():
             name = load.name if isinstance(load, Stiffness) else re.sub(r"(?<!^)(?=[A-Z])", " ", type(load).__name__).lower()
-            found[name] = found.get(name, np.zeros(6)) + force
-    return found
+            forces[name] = forces.get(name, np.zeros(6)) + force
+    return forces
 
 
 @quick_jit
@@ -67,7 +68,7 @@ def mooring_stiffness(model: Model, position: Float[Array, "6"]) -> Float[Array,
     Returns:
         Stiffness (N/m, N, N m), (6, 6).
     """
-    lines = dataclasses.replace(model, loads=tuple(load for load in model.loads if isinstance(load, AnyLines)))
+    lines = dataclasses.replace(model, loads=tuple(load for load in model.loads if isinstance(load, AbstractLines)))
     return -jax.jacfwd(lines.force_at_rest)(position)
 
 
@@ -98,17 +99,17 @@ def line_states(model: Model, position: Float[Array, "6"]) -> list[LineState]:
         The lines, in the order of the platform file; copies of a line by heading follow each other.
     """
     matrix = rotation(jnp.asarray(position)[3:])
-    found: list[LineState] = []
+    states: list[LineState] = []
     for load in model.loads:
-        if isinstance(load, AnyLines):
+        if isinstance(load, AbstractLines):
             columns = [np.asarray(column) for column in _line_columns(load, jnp.asarray(position), matrix)]
-            found += [LineState(*(float(x) for x in row)) for row in zip(*columns, strict=True)]
-    return found
+            states += [LineState(*(float(x) for x in row)) for row in zip(*columns, strict=True)]
+    return states
 
 
 @quick_jit
 def _line_columns(
-    load: AnyLines, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
+    load: AbstractLines, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
 ) -> tuple[Float[Array, " l"], Float[Array, " l"], Float[Array, " l"], Float[Array, " l"]]:
     """Tension, angle, strain and length on the seabed of lines."""
     tension, towards = load.tension(position, matrix)
@@ -118,6 +119,7 @@ def _line_columns(
         return tension, angle, tension / load.segments().stiffness[0], load.on_seabed(tension * down)
     if isinstance(load, TensionTableLines):
         return tension, angle, jnp.maximum(load.strain(position, matrix), 0.0), jnp.zeros_like(tension)
+    assert isinstance(load, MooringLines)
     lines = [f"line{i + 1}" for i in range(load.anchor.shape[1])]
     axial = jnp.stack([load.stiffness[line] * load.unstretched_length[line] for line in lines])
     return tension, angle, tension / axial, jnp.zeros_like(tension)
@@ -148,7 +150,7 @@ def offset_curve(model: Model, dof: str, offsets: Float[Array, " n"]) -> OffsetC
     Returns:
         Positions and forces; NaN where no balance was found.
     """
-    position, force = (np.asarray(one) for one in _held(model, DOFS.index(dof), jnp.asarray(offsets, float)))
+    position, force = (np.asarray(values) for values in _held(model, DOFS.index(dof), jnp.asarray(offsets, float)))
     return OffsetCurve(dof, position, force)
 
 

@@ -57,7 +57,7 @@ def _unbalanced(position: Float[Array, "6"], model: Model, held: _HeldMotion | N
 
 @eqx.filter_custom_jvp
 def _root(model: Model, held: _HeldMotion | None) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
-    """Equilibrium, and what is out of balance one step of Newton's method before it."""
+    """Equilibrium, and the residual one step of Newton's method before it."""
     # Newton's iteration is written out: tracing a library's takes longer than all the rest of a command's start, and programs
     # with the library's implicit derivative cannot be kept compiled
 
@@ -65,12 +65,12 @@ def _root(model: Model, held: _HeldMotion | None) -> tuple[Float[Array, "6"], Fl
         residual = _unbalanced(q, model, held)
         return residual, residual
 
-    def going(at: tuple[Array, Array, Array, Array]) -> Array:
-        root, step, count, _ = at
+    def going(state: tuple[Array, Array, Array, Array]) -> Array:
+        root, step, count, _ = state
         return (jnp.abs(step).max() > NEWTON_TOLERANCE * (1 + jnp.abs(root).max())) & (count < ITERATIONS)
 
-    def newton(at: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
-        root, _, count, _ = at
+    def newton(state: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
+        root, _, count, _ = state
         slopes, residual = jax.jacfwd(balance, has_aux=True)(root)
         # the least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is
         step = jnp.linalg.pinv(slopes, rtol=MIN_RESTORING) @ residual
@@ -85,7 +85,7 @@ def _root(model: Model, held: _HeldMotion | None) -> tuple[Float[Array, "6"], Fl
 def _root_jvp(primals, tangents):
     """By the implicit function theorem."""
     root, unbalanced = _root(*primals)
-    _, balance = eqx.filter_jvp(lambda *at: _unbalanced(root, *at), primals, tangents)
+    _, balance = eqx.filter_jvp(lambda *arguments: _unbalanced(root, *arguments), primals, tangents)
     change = -jnp.linalg.pinv(jax.jacfwd(_unbalanced)(root, *primals), rtol=MIN_RESTORING) @ balance
     return (root, unbalanced), (change, jnp.zeros(6))
 
@@ -113,17 +113,17 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
     position, residual = _solve(model)
     if isinstance(position, jax.core.Tracer):
         return position
-    at = np.asarray(position)
+    rest = np.asarray(position)
     worst = int(np.argmax(np.abs(np.nan_to_num(np.asarray(residual), nan=np.inf))))
-    if not (np.abs(np.asarray(residual)).max() < 1e-8 and np.isfinite(at).all()):
+    if not (np.abs(np.asarray(residual)).max() < 1e-8 and np.isfinite(rest).all()):
         off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else MOMENT_ARM * float(model.size))
         raise EquilibriumError(
             f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
             f"{'' if worst < 3 else ' times 1 m'} at the reference position; check mass, volume and mooring"
         )
     draught = np.abs(np.asarray(model.hull.elements.start)[2]).max(initial=0.0)
-    if abs(at[2]) > max(draught, MAX_HEAVE * float(model.size)) or (np.abs(at[3:5]) > 1.0).any():
-        where = ", ".join(f"{dof} {x:.3g} {unit}" for dof, x, unit in zip(DOFS[2:5], at[2:5], ("m", "rad", "rad")))
+    if abs(rest[2]) > max(draught, MAX_HEAVE * float(model.size)) or (np.abs(rest[3:5]) > 1.0).any():
+        where = ", ".join(f"{dof} {x:.3g} {unit}" for dof, x, unit in zip(DOFS[2:5], rest[2:5], ("m", "rad", "rad")))
         raise EquilibriumError(f"the platform only balances at {where}: check mass, centre of mass, volume and mooring")
     return position
 

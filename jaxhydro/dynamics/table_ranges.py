@@ -63,13 +63,13 @@ def table_ranges(model: Model, candidates: bool = False) -> tuple[TableRange, ..
         model: The platform.
         candidates: Include tables that a diagnosis may add.
     """
-    found = []
+    ranges = []
     for load in model.loads:
         covers = load.covers()
         if covers is None or not (candidates or any(_acts(value) for value in load.values.values())):
             continue
-        found.append(TableRange(*covers))
-    return tuple(found)
+        ranges.append(TableRange(*covers))
+    return tuple(ranges)
 
 
 def _acts(value: object) -> bool:
@@ -80,23 +80,30 @@ def _acts(value: object) -> bool:
 def outside_tables(model: Model, waves: Components) -> dict[TableRange, float]:
     """Fraction of the first-order energy of an irregular sea outside each table of the model."""
     omega, energy = np.asarray(waves.omega), np.asarray(waves.amplitude) ** 2
-    return {one: one.share_outside(omega, energy) for one in table_ranges(model)}
+    return {table: table.share_outside(omega, energy) for table in table_ranges(model)}
 
 
 def regular_fault(model: Model, period: float) -> tuple[str, str] | None:
     """Expected range and found period of a regular wave outside a table, in words, or None."""
     omega = np.array([2 * math.pi / period])
-    for one in table_ranges(model):
-        if one.outside(omega)[0]:
-            return f"a wave within the {one.key} table, which has {one.words}", f"{period:g} s ({omega[0]:.4g} rad/s)"
+    for table in table_ranges(model):
+        if table.outside(omega)[0]:
+            return f"a wave within the {table.key} table, which has {table.words}", f"{period:g} s ({omega[0]:.4g} rad/s)"
     return None
 
 
 def heading_fault(model: Model, headings: Float[np.ndarray, " w"]) -> tuple[str, str] | None:
-    """Why a model's tables are not for a sea of several headings (rad): what is expected and found, or None.
+    """Reason why a model's tables are not for a sea of several headings, or None.
 
     A table that the platform file gives one `heading` is for waves of that heading alone. A drift table has no pairs of two
     headings: in such a sea it is used by Newman's approximation only.
+
+    Args:
+        model: The platform.
+        headings: Directions that the waves travel to (rad), (w,).
+
+    Returns:
+        What is expected and what is found, in words, or None.
     """
     acting = [load for load in model.loads if any(_acts(value) for value in load.values.values())]
     for key, table in ((k, t) for load in acting for k, t in _tables(load)):
@@ -106,9 +113,9 @@ def heading_fault(model: Model, headings: Float[np.ndarray, " w"]) -> tuple[str,
             return f"{wanted} (or no {key})", "a table of one heading"
         outside = ~by_heading.covers(headings)
         if outside.any():
-            known = f"{math.degrees(float(by_heading.heading[0])):g} to {math.degrees(float(by_heading.heading[-1])):g} deg"
-            found = f"{outside.mean():.1%} of the waves outside them"
-            return f"waves of the headings of the {key} table, {known}", found
+            limits = f"{math.degrees(float(by_heading.heading[0])):g} to {math.degrees(float(by_heading.heading[-1])):g} deg"
+            fraction = f"{outside.mean():.1%} of the waves outside them"
+            return f"waves of the headings of the {key} table, {limits}", fraction
         if not getattr(table, "newman", True):
             return f"`approximation: newman` of the {key} table in a sea of several headings", "the full table"
     return None

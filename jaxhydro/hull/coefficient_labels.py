@@ -18,7 +18,7 @@ Shares = tuple[Share, ...]
 
 
 def shares_of(groups: Iterable[tuple[str, Mapping[str, str]]]) -> Shares:
-    """What groups share, from each group's mapping of a coefficient's name to its owner."""
+    """Shared coefficients, from each group's mapping of a coefficient's name to its owner."""
     return tuple(dict.fromkeys(Share(group, name, owner) for group, row in groups for name, owner in row.items()))
 
 
@@ -28,6 +28,12 @@ def coefficient_of(symbol: str, kind: str) -> str:
 
 
 def owners(rows: Iterable[tuple[str, str]], symbol: str, shares: Shares) -> list[tuple[str, str]]:
-    """Groups that own a parameter `symbol` (Ca, Cd, Cp, drag_exponent), with its kind, for each group and kind (t, z)."""
-    owner = {(one.group, one.name): one.owner for one in shares}
+    """Groups that own a parameter, with its kind, for each group and kind.
+
+    Args:
+        rows: Groups and kinds (t, z).
+        symbol: Symbol of the parameter (Ca, Cd, Cp, drag_exponent).
+        shares: Coefficients that groups share.
+    """
+    owner = {(share.group, share.name): share.owner for share in shares}
     return [(owner.get((group, coefficient_of(symbol, kind)), group), kind) for group, kind in rows]

@@ -67,7 +67,7 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     labels = tuple(dict.fromkeys(m.group for m in members if m.column))
     rows: list[_End] = []
     faces: list[_End] = []
-    of: list[int] = []
+    strip_of: list[int] = []
     beside: list[int] = []
     afloat: list[tuple[int, int, float]] = []
     taper, count, elements = np.asarray(strips.taper), 0, 0
@@ -79,24 +79,24 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
         for point, fraction, far in ((member.a, 0.0, not upright), (member.b, 1.0, upright)):
             area = float(member.area(member.size(np.array([fraction])))[0])
             radius = math.sqrt(area / math.pi) if member.column else 0.0
-            own = (radius, area if member.column else 0.0, 2 / 3 * math.pi * radius**3)
+            sizes = (radius, area if member.column else 0.0, 2 / 3 * math.pi * radius**3)
             if (up := member.upward) is not None and member.floats:
                 part, middle, _ = wet_section(member.submerged, member.circular)
                 afloat.append((len(rows), elements + (len(orders) - 1 if fraction else 0), part))
                 area, direction = part * area, member.directions[up]
                 height = float(member.size(np.array([fraction]))[0][up])
                 point = point + middle * height * direction * np.sign(direction[2])
-            rows.append(_End(point, member.axis, member.gauge, 1.0 if far else -1.0, area, *own, label))
+            rows.append(_End(point, member.axis, member.gauge, 1.0 if far else -1.0, area, *sizes, label))
         elements += len(orders)
         for lo, hi, order in orders:
             near, far_end = (lo, hi) if upright else (hi, lo)
-            first, last = (float(member.area(member.size(np.array([at])))[0]) for at in (near, far_end))
+            first, last = (float(member.area(member.size(np.array([station])))[0]) for station in (near, far_end))
             if taper[:, count].any():
                 radius = math.sqrt(0.5 * (first + last) / math.pi) if member.column else 0.0
                 start = member.a + (member.b - member.a) * near
                 outward = -1.0 if last >= first else 1.0
                 faces += order * [_End(start, member.axis, member.gauge, outward, 0.0, radius, 0.0, 0.0, label)]
-                of += range(count, count + order)
+                strip_of += range(count, count + order)
             count += order
     columns = list(zip(*(_free(rows) + faces), strict=True)) if rows else [()] * len(_End._fields)
     vectors = [np.array(column, float).reshape(-1, 3).T for column in columns[:3]]
@@ -104,7 +104,13 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     fields: dict[str, Any] = dict(zip(_End._fields, map(on_device, (*vectors, *numbers))))
     shares = shares_of((member.group, member.shared) for member in members)
     return Ends(
-        **fields, label=columns[-1], labels=labels, strip=tuple(of), beside=(*beside, *of), shares=shares, afloat=tuple(afloat)
+        **fields,
+        label=columns[-1],
+        labels=labels,
+        strip=tuple(strip_of),
+        beside=(*beside, *strip_of),
+        shares=shares,
+        afloat=tuple(afloat),
     )
 
 
@@ -113,13 +119,13 @@ def _free(rows: Sequence[_End]) -> list[_End]:
 
     So a step between two members has the added mass and drag of the ring, as OpenFAST HydroDyn and RAFT have it.
     """
-    found = list(rows)
-    for i, one in enumerate(rows):
+    free = list(rows)
+    for i, end in enumerate(rows):
         for j, other in enumerate(rows[:i]):
-            met = np.linalg.norm(one.position - other.position) < 1e-3 * max(one.radius, other.radius)
-            if met and abs(one.axis @ other.axis) > 1 - 1e-6 and one.outward * other.outward * (one.axis @ other.axis) < 0:
-                large, small = (i, j) if one.area >= other.area else (j, i)
-                ring = (found[large].facing - found[small].facing, found[large].volume - found[small].volume)
-                found[large] = found[large]._replace(facing=max(ring[0], 0.0), volume=max(ring[1], 0.0))
-                found[small] = found[small]._replace(facing=0.0, volume=0.0)
-    return found
+            met = np.linalg.norm(end.position - other.position) < 1e-3 * max(end.radius, other.radius)
+            if met and abs(end.axis @ other.axis) > 1 - 1e-6 and end.outward * other.outward * (end.axis @ other.axis) < 0:
+                large, small = (i, j) if end.area >= other.area else (j, i)
+                ring = (free[large].facing - free[small].facing, free[large].volume - free[small].volume)
+                free[large] = free[large]._replace(facing=max(ring[0], 0.0), volume=max(ring[1], 0.0))
+                free[small] = free[small]._replace(facing=0.0, volume=0.0)
+    return free

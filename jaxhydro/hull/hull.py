@@ -30,10 +30,10 @@ class Wetted(NamedTuple):
 class Hull(eqx.Module):
     """Elements, strips and ends, and the constant matrices between the platform's motion and theirs.
 
-    Lines are the strips' first directions, their second ones, then the ends and faces. What belongs to a line is linear in the
-    distance s of its strip from the element's start, and stored as the part for s = 0 and the part that goes with s: `motion`
-    is the lever, `inward` times the products p^2, q^2, r^2, pq, pr, qr of the angular velocity the centripetal acceleration.
-    `moments` are those of the displaced volume: see `masses`.
+    Lines are the strips' first directions, their second ones, then the ends and faces. Quantities of a line are linear in
+    the distance s of its strip from the element's start. They are stored as the part for s = 0 and the part that goes with
+    s. `motion` is the lever. `inward` times the products p^2, q^2, r^2, pq, pr, qr of the angular velocity is the
+    centripetal acceleration. `moments` are those of the displaced volume: see `masses`.
     """
 
     elements: Elements
@@ -67,11 +67,11 @@ class Hull(eqx.Module):
         points = whole + (0 if lean is None else lean.area.size)
         cylinders = Cylinders(on_device(np.array(radii, float)), (*index, *[-1] * points))
         gauges = np.concatenate([elements.gauge, tips.gauge[:, :whole]], axis=1).round(9)
-        place, which = np.unique(gauges, axis=1, return_inverse=True)
-        gauge_of = tuple(map(int, which.reshape(-1)))
+        positions, gauge_index = np.unique(gauges, axis=1, return_inverse=True)
+        gauge_of = tuple(map(int, gauge_index.reshape(-1)))
         matrices = _compiled_matrices(elements, strips, tips, powers)
         more = (on_device(float(size)), waterplane(members, size), lean)
-        return cls(elements, strips, tips, cylinders, on_device(place), gauge_of, *matrices, *more)
+        return cls(elements, strips, tips, cylinders, on_device(positions), gauge_of, *matrices, *more)
 
     def turned(self, rotation: Float[Array, "3 3"]) -> "Hull":
         """Hull with the directions of strips and ends rotated about their points."""
@@ -161,8 +161,8 @@ def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tu
     first, second = strips.directions[:, 0], strips.directions[:, 1]
     direction = jnp.concatenate([first, second, ends.axis], axis=1)
     point = jnp.concatenate([strips.start, strips.start, ends.position], axis=1)
-    of, whole = jnp.array(ends.strip, dtype=int), len(ends.label) - len(ends.strip)
-    of_faces = strips.axis[:, of]
+    face_strip, whole = jnp.array(ends.strip, dtype=int), len(ends.label) - len(ends.strip)
+    of_faces = strips.axis[:, face_strip]
     along = jnp.concatenate([strips.axis, strips.axis, jnp.zeros((3, whole)), of_faces], axis=1)
     lever = jnp.concatenate([direction, jnp.cross(point, direction, axis=0)])
     twist = jnp.concatenate([jnp.zeros_like(direction), jnp.cross(along, direction, axis=0)])
@@ -170,7 +170,7 @@ def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tu
     inward = jnp.concatenate([_centripetal(direction, point), _centripetal(direction, along)], axis=1)
     # of faces of wholly wet elements; along their own axis the distance does not matter
     home = jnp.array(strips.element, dtype=int)
-    away = jnp.concatenate([jnp.zeros(whole), (elements.length[home] * strips.fraction)[of]])
+    away = jnp.concatenate([jnp.zeros(whole), (elements.length[home] * strips.fraction)[face_strip]])
     tips = lever[:, lever.shape[1] - away.size :] + away * twist[:, twist.shape[1] - away.size :]
     return motion, inward, _moments(elements, strips, lever, twist, tips, powers)
 
@@ -192,8 +192,11 @@ def _moments(
     tips: Float[Array, "6 m"],
     powers: int,
 ) -> Float[Array, "6 6 k"]:
-    """Sum over an element's strips of share, sectional area and h h^T as coefficients of a polynomial in its wetted length,
-    by power, direction and element; then h h^T of the ends."""
+    """Moments of the displaced volume as polynomials of the elements' wetted lengths, then of the ends.
+
+    An element's entry is the sum over its strips of share times sectional area times h h^T. It is stored as coefficients of
+    a polynomial in the wetted length, by power, direction and element. The entry of an end is h h^T.
+    """
     n, e = len(strips.element), len(elements.length)
     fraction = jnp.concatenate([strips.fraction, strips.fraction])
     h, twisted = lever[:, : 2 * n], twist[:, : 2 * n] * fraction
@@ -201,8 +204,8 @@ def _moments(
     def outer(a, b):
         return a[:, None] * b[None]
 
-    (size, other), (taper, change) = strips.size, strips.taper * strips.fraction
-    area = [size * other, size * change + other * taper, taper * change][: powers - 2]
+    (width, height), (wider, higher) = strips.size, strips.taper * strips.fraction
+    area = [width * height, width * higher + height * wider, wider * higher][: powers - 2]
     square = [outer(h, h), outer(h, twisted) + outer(twisted, h), outer(twisted, twisted)]
     of_strips = [jnp.zeros((6, 6, 2 * n)) for _ in range(powers)]
     for p, coefficient in enumerate(area):
@@ -211,5 +214,5 @@ def _moments(
             of_strips[p + q] = of_strips[p + q] + share * matrix
     home = jnp.array(strips.element, dtype=int)
     index = jnp.concatenate([home, home + e])  # by direction and element
-    found = jnp.stack([jnp.zeros((6, 6, 2 * e)).at[:, :, index].add(part) for part in of_strips], axis=2)
-    return jnp.concatenate([found.reshape(6, 6, -1), outer(tips, tips)], axis=2)
+    moments = jnp.stack([jnp.zeros((6, 6, 2 * e)).at[:, :, index].add(part) for part in of_strips], axis=2)
+    return jnp.concatenate([moments.reshape(6, 6, -1), outer(tips, tips)], axis=2)

@@ -30,16 +30,16 @@ def element_outlines(hull: Hull, points: int = POINTS) -> Float[np.ndarray, "e 2
     """
     strips, elements = hull.strips, hull.elements
     first = {element: strip for strip, element in reversed(list(enumerate(strips.element)))}
-    which = [first[i] for i in range(elements.length.size)]
+    first_strip = [first[i] for i in range(elements.length.size)]
     rectangle = np.repeat(CORNERS, points // len(CORNERS), axis=0)
-    round_ = np.asarray(strips.shape)[which] < 1
+    round_ = np.asarray(strips.shape)[first_strip] < 1
     section = np.where(round_[:, None, None], circle(points), rectangle)
-    along = np.stack([np.zeros(len(which)), np.asarray(elements.length)], axis=1)
-    size, taper = (np.asarray(one)[:, which].T[:, None] for one in (strips.size, strips.taper))
+    along = np.stack([np.zeros(len(first_strip)), np.asarray(elements.length)], axis=1)
+    size, taper = (np.asarray(extent)[:, first_strip].T[:, None] for extent in (strips.size, strips.taper))
     sizes = size + taper * along[..., None]
     middle = np.asarray(elements.start).T[:, None] + along[..., None] * np.asarray(elements.axis).T[:, None]
     across = section[:, None] * sizes[:, :, None]
-    directions = np.asarray(strips.directions)[:, :, which]
+    directions = np.asarray(strips.directions)[:, :, first_strip]
     return middle[:, :, None] + np.einsum("ejpk,ike->ejpi", across, directions)
 
 

@@ -72,7 +72,7 @@ class Member(NamedTuple):
 
     @property
     def axis(self) -> np.ndarray:
-        """Unit vector from the lower to the upper end of what fills from its lower end, from a to b of others."""
+        """Unit vector from the lower to the upper end of members that fill from below, from a to b of others."""
         return -self._along if self.fills and self._along[2] < 0 else self._along
 
     @property
@@ -124,7 +124,11 @@ class Member(NamedTuple):
         """Fractions of the length, strictly inside, at which the taper changes."""
         slope = np.diff(self.sizes, axis=0) / np.diff(self.stations)[:, None]
         bend = np.abs(np.diff(slope, axis=0)).max(axis=1)
-        return [float(at) for at, one in zip(self.stations[1:-1], bend, strict=True) if one > 1e-9 * self.sizes.max()]
+        return [
+            float(station)
+            for station, change in zip(self.stations[1:-1], bend, strict=True)
+            if change > 1e-9 * self.sizes.max()
+        ]
 
     @property
     def submerged(self) -> float:
@@ -135,12 +139,12 @@ class Member(NamedTuple):
 
     def _edges(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest z (m) of the faces at a and b."""
-        up, other = (abs(float(direction[2])) for direction in self._across(self._along))
-        found = []
+        first, second = (abs(float(direction[2])) for direction in self._across(self._along))
+        edges = []
         for end, size in ((self.a, self.sizes[0]), (self.b, self.sizes[-1])):
-            half = 0.5 * math.hypot(up, other) * size[0] if self.circular else 0.5 * (up * size[0] + other * size[1])
-            found.append(np.array([end[2] - half, end[2] + half]))
-        return found[0], found[1]
+            half = 0.5 * math.hypot(first, second) * size[0] if self.circular else 0.5 * (first * size[0] + second * size[1])
+            edges.append(np.array([end[2] - half, end[2] + half]))
+        return edges[0], edges[1]
 
     @property
     def pierced(self) -> bool:
@@ -179,28 +183,29 @@ class Member(NamedTuple):
         """
         length = float(np.linalg.norm(self.b - self.a))
         if self.floats:
-            at = np.linspace(0.0, 1.0, max(self.elements or 0, MIN_FLOATING_ELEMENTS) + 1)
-            far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
-            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
+            fractions = np.linspace(0.0, 1.0, max(self.elements or 0, MIN_FLOATING_ELEMENTS) + 1)
+            far = [kink for kink in self.kinks() if np.abs(fractions - kink).min() > 1e-9]
+            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*fractions, *far]))]
         if self.elements is not None:
-            at = np.linspace(0.0, 1.0, self.elements + 1)
-            far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
-            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
-        found = []
+            fractions = np.linspace(0.0, 1.0, self.elements + 1)
+            far = [kink for kink in self.kinks() if np.abs(fractions - kink).min() > 1e-9]
+            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*fractions, *far]))]
+        elements = []
         for lo, hi in pairwise(self.stations):
-            low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
+            low, high = sorted((self.a + (self.b - self.a) * fraction)[2] for fraction in (lo, hi))
             under = min(1.0, max(0.0, -low) / max(high - low, 1e-9 * length)) if self.fills else 1.0
             spacing = size * (COLUMN_SPACING if self.column else PONTOON_SPACING)
             count = math.ceil(under * (hi - lo) * length / spacing - WHOLE_NUMBER_TOLERANCE)
-            found.append((float(lo), float(hi), max(2, min(count, 20))))
-        return found
+            elements.append((float(lo), float(hi), max(2, min(count, 20))))
+        return elements
 
 
 class Strips(eqx.Module):
     """Strips of all load elements. See the module's docstring for the frame and the two directions.
 
-    A strip is at `start + fraction * reach * axis`, `reach` the wetted length of its element (its whole length where it does
-    not pierce the surface), and stands for the share `weight` of the wetted length. Sizes vary linearly along an element.
+    A strip is at `start + fraction * reach * axis`. `reach` is the wetted length of its element, or its whole length where
+    it does not pierce the surface. The strip stands for the share `weight` of the wetted length. Sizes vary linearly along
+    an element.
     """
 
     start: Float[Array, "3 n"]  # m, the lower end of the strip's element
@@ -216,7 +221,7 @@ class Strips(eqx.Module):
 
 
 class Elements(eqx.Module):
-    """Load elements of all members: what is wetted."""
+    """Load elements of all members, the parts whose wetted length is computed."""
 
     start: Float[Array, "3 e"]  # m, the lower end
     axis: Float[Array, "3 e"]  # upward for a column
@@ -287,10 +292,10 @@ def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]
     element_of: tuple[int, ...] = ()
     radius_of: tuple[float, ...] = ()
     if rows:
-        *whole, which = (np.stack(column, axis=-1) for column in zip(*elements, strict=True))
+        *whole, element_labels = (np.stack(column, axis=-1) for column in zip(*elements, strict=True))
         *parts, home, radius = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
         radius_of = tuple(map(float, radius))
-        label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
+        label_of, element_of = tuple(tuple(map(int, row)) for row in element_labels), tuple(map(int, home))
     of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(on_device, parts), strict=True))
     strips = Strips(**of_strips, element=element_of, diffracts=radius_of)
     names = ("start", "axis", "length", "thickness", "gauge", "circle")

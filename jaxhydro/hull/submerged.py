@@ -27,7 +27,7 @@ class EndShape(NamedTuple):
     A face belongs to the wet part of its strip. An end is weighted by `EndFlow.wet`. The end of a member that lies at the
     surface has the area of the wet section beside it.
 
-    A face of a strip over which the section A grows by dA has the area dA, against the axis, and the volume r dA, A = pi r².
+    A face of a strip over which the section A = pi r² grows by dA has the area dA, against the axis. Its volume is r dA.
     Over a step that makes 2/3 pi (R³ - r³), the difference of two half spheres.
 
     Attributes:
@@ -55,19 +55,19 @@ class EndShape(NamedTuple):
         """
         ends, strips, area = hull.ends, hull.strips, hull.ends.area
         if ends.afloat:
-            at, beside, part = (jnp.array(column) for column in zip(*ends.afloat, strict=True))
-            area = area.at[at].set(area[at] / part * wetted.length[beside] / hull.elements.length[beside])
-        own = cls(area, ends.facing, ends.volume)
+            index, beside, part = (jnp.array(column) for column in zip(*ends.afloat, strict=True))
+            area = area.at[index].set(area[index] / part * wetted.length[beside] / hull.elements.length[beside])
+        without_faces = cls(area, ends.facing, ends.volume)
         if not ends.strip:
-            return own
-        of = jnp.array(ends.strip, dtype=int)
-        shape, (width, height), (wider, higher) = strips.shape[of], extent[:, of], strips.taper[:, of]
-        grown = shape * (wider * height + higher * width) * covered[of]
+            return without_faces
+        face_strip = jnp.array(ends.strip, dtype=int)
+        shape, (width, height), (wider, higher) = strips.shape[face_strip], extent[:, face_strip], strips.taper[:, face_strip]
+        grown = shape * (wider * height + higher * width) * covered[face_strip]
         faces = slice(len(ends.label) - len(ends.strip), None)
         facing = jnp.where(ends.radius[faces] > 0, jnp.abs(grown), 0.0)
         radius = jnp.sqrt(shape * width * height / math.pi)
-        found = (-ends.outward[faces] * grown, facing, radius * facing)
-        return cls(*(one.at[faces].set(face) for one, face in zip(own, found, strict=True)))
+        of_faces = (-ends.outward[faces] * grown, facing, radius * facing)
+        return cls(*(values.at[faces].set(face) for values, face in zip(without_faces, of_faces, strict=True)))
 
 
 class Lines(NamedTuple):

@@ -1,8 +1,8 @@
 """Members within 10 degrees of the horizontal that still water cuts.
 
-They are wet by the depth of every part of their length. Strips have the wet section's volume, at its centroid. The pressure
-of the waves on the lid that still water makes of the section, which a wet body does not have, is a load of its own: without
-it the force would be that on a closed body under water.
+They are wet by the depth of every part of their length. Strips have the wet section's volume, at its centroid. Still water
+makes a lid of the section, which a wet body does not have. The pressure of the waves on that lid is a load of its own:
+without it the force would be that on a closed body under water.
 """
 
 from collections.abc import Sequence
@@ -66,31 +66,35 @@ class Waterplane(eqx.Module):
         """
         flow, strips, density = now.strip_flow, now.hull.strips, now.environment.density
         assert flow.acceleration is not None and flow.pressure is not None
-        of, up = jnp.array(self.strip, dtype=int), jnp.array(self.up, dtype=int)
-        home = jnp.array(strips.element, dtype=int)[of]
+        strip_index, up = jnp.array(self.strip, dtype=int), jnp.array(self.up, dtype=int)
+        home = jnp.array(strips.element, dtype=int)[strip_index]
         share = now.wetted.length[home] / now.hull.elements.length[home]
         pierced = covered(share, MIN_SECTION_SHARE) * covered(1 - share, MIN_SECTION_SHARE)
-        point = strips.start[:, of] + now.wetted.reach[home] * strips.fraction[of] * strips.axis[:, of]
+        point = (
+            strips.start[:, strip_index] + now.wetted.reach[home] * strips.fraction[strip_index] * strips.axis[:, strip_index]
+        )
         height = jnp.maximum(-(now.position[2] + now.rotation[2] @ point), 0.0)
-        rising, aside = flow.acceleration[up, of], flow.acceleration[1 - up, of]
-        upward, across = strips.directions[:, up, of], strips.directions[:, 1 - up, of]
+        rising, aside = flow.acceleration[up, strip_index], flow.acceleration[1 - up, strip_index]
+        upward, across = strips.directions[:, up, strip_index], strips.directions[:, 1 - up, strip_index]
         sign = jnp.sign(upward[2])
         area = density * self.width * self.length * pierced
-        force = area * (sign * flow.pressure[of] - height * rising)
+        force = area * (sign * flow.pressure[strip_index] - height * rising)
         moment = -area * self.width**2 / 12 * aside * sign * jnp.cross(across, upward, axis=0)
-        on_strips = jnp.zeros_like(flow.acceleration).at[up, of].add(force)
+        on_strips = jnp.zeros_like(flow.acceleration).at[up, strip_index].add(force)
         return on_strips, jnp.concatenate([jnp.zeros(3), moment.sum(axis=1)])
 
 
 class Leaning(eqx.Module):
     """Wave pressure on the waterplane of inclined members that still water cuts.
 
-    The pressure on their ends and the inertia of their strips make up the force on the wet volume and, on the lid that still
-    water makes, the part along the axis. With A the section, p the pressure there, s the axis and k the vertical, what is
-    left is p A (k / (k . s) - s).
+    The pressure on the ends of such members and the inertia of their strips already make up two forces. These are the force
+    on the wet volume, and the axial part of that on the lid. The lid is the section that still water cuts. With A the
+    section, p the pressure there, s the axis and k the vertical, there remains
 
-    The moment about the lid's middle is that of the pressure's slope over the lid, less what an upright column would have,
-    and that of the wedge by which the wet volume is not symmetrical about the axis.
+        p A (k / (k . s) - s).
+
+    The moment about the lid's middle has two parts. One is that of the pressure's slope over the lid, less that of an
+    upright column. The other is that of the wedge by which the wet volume is not symmetrical about the axis.
     """
 
     point: Float[Array, "3 k"]  # m, where still water cuts the axis
@@ -106,11 +110,11 @@ class Leaning(eqx.Module):
         force = density * pressure * self.area * (vertical[:, None] / steep - self.axis)
         slanted = jnp.eye(3)[:, :, None] - self.axis[:, None] * vertical[None, :, None] / steep  # along the axis, onto the lid
         lid = jnp.einsum("ijk,jlk,mlk,mk->ik", slanted, self.second, slanted, water) / steep
-        own = jnp.einsum("ijk,jk->ik", self.second, water)
+        upright = jnp.einsum("ijk,jk->ik", self.second, water)
         lean = jnp.einsum("ijk,j->ik", self.second, vertical) / steep
         wedge = 0.5 * (lean * vertical[:, None]).sum(axis=0) / steep * self.axis - lean
         moment = jnp.cross(self.point, force, axis=0) + density * (
-            jnp.cross(own, self.axis, axis=0) - jnp.cross(lid, vertical[:, None], axis=0) + jnp.cross(wedge, water, axis=0)
+            jnp.cross(upright, self.axis, axis=0) - jnp.cross(lid, vertical[:, None], axis=0) + jnp.cross(wedge, water, axis=0)
         )
         return jnp.concatenate([force, moment]).sum(axis=1)
 
@@ -119,8 +123,8 @@ MIN_LEAN = 0.02  # rad: what leans less is upright
 
 
 def leaning(members: Sequence[Any]) -> Leaning | None:
-    """Of `strips.Member`s that lean and that still water cuts; None: there are none."""
-    found = []
+    """Load of the `strips.Member`s that lean and that still water cuts, or None."""
+    rows = []
     for member in members:
         low, high = sorted((float(member.a[2]), float(member.b[2])))
         if member.fills and low < 0 < high and abs(float(member.axis[2])) < np.cos(MIN_LEAN):
@@ -128,12 +132,12 @@ def leaning(members: Sequence[Any]) -> Leaning | None:
             size, directions = member.size(np.array(share)), np.stack(member.directions)
             along = size**2 / (16 if member.circular else 12)  # of the area: mean squares of the distances
             second = float(member.area(size)) * (along * directions.T) @ directions
-            found.append((member.gauge, member.axis, float(member.area(size)), second))
-    return Leaning(*(jnp.array(np.stack(part, axis=-1)) for part in zip(*found, strict=True))) if found else None
+            rows.append((member.gauge, member.axis, float(member.area(size)), second))
+    return Leaning(*(jnp.array(np.stack(part, axis=-1)) for part in zip(*rows, strict=True))) if rows else None
 
 
 def waterplane(members: Sequence[Any], size: float = 1.0) -> Waterplane | None:
-    """Of `strips.Member`s that lie at the surface; None: there are none."""
+    """Load of the `strips.Member`s that lie at the surface, or None."""
     width, length = list[float](), list[float]()
     strip, up, count = list[int](), list[int](), 0
     for member in members:
@@ -143,7 +147,7 @@ def waterplane(members: Sequence[Any], size: float = 1.0) -> Waterplane | None:
                 across = float(member.size(np.array(0.5 * (lo + hi)))[1 - upward])
                 share = 0.5 * np.polynomial.legendre.leggauss(order)[1]
                 width += order * [across * wet_section(member.submerged, member.circular)[2]]
-                length += [float(one) * (hi - lo) * span for one in share]
+                length += [float(weight) * (hi - lo) * span for weight in share]
                 strip += range(count, count + order)
                 up += order * [upward]
             count += order

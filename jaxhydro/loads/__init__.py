@@ -3,6 +3,7 @@
 A new effect is one file in this folder and one line in `LOADS`. Drag laws are in `drag`, with a registry of their own.
 """
 
+from jaxhydro.loads.abstract_lines import AbstractLines
 from jaxhydro.loads.added_mass import AddedMass
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.catenary.catenary_lines import CatenaryLines
@@ -90,7 +91,12 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "slender_body_forces": SlenderBodyForces,
 }
 
-AnyLines = MooringLines | CatenaryLines | TensionTableLines
-"""Loads with a method `tension`: the tension of each line, and the unit vectors to the anchors."""
-
-__all__ = ["LOADS", "AbstractLoad", "AnyLines", "Action", "Instant", "Parameter", *(load.__name__ for load in LOADS.values())]
+__all__ = [
+    "LOADS",
+    "AbstractLines",
+    "AbstractLoad",
+    "Action",
+    "Instant",
+    "Parameter",
+    *(load.__name__ for load in LOADS.values()),
+]

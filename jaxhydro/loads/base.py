@@ -1,4 +1,4 @@
-"""Base class of loads, and what they do at an instant."""
+"""Base class of loads, and their forces and added mass at an instant."""
 
 import abc
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ from jaxhydro.waves.sea_state import SeaState
 
 
 class Action(NamedTuple):
-    """Forces, added mass and memory rate of a load at an instant; None for what it does not have.
+    """Forces, added mass and memory rate of a load at an instant; None for those it does not have.
 
     Attributes:
         force: Force and moment on the reference point, earth axes (N, N m).
@@ -109,10 +109,13 @@ class AbstractLoad(AbstractEffect):
         return None
 
     def fast_displacement(self, memory: Any) -> Float[Array, "2"] | None:
-        """Part of the horizontal displacement (m, earth axes) that computed wave forces do not follow, or None.
+        """Part of the platform's displacement that computed wave forces do not follow, or None.
 
         Args:
             memory: The load's memory.
+
+        Returns:
+            Horizontal displacement (m, earth axes), (2,), or None.
         """
         return None
 

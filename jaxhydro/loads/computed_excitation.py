@@ -16,8 +16,8 @@ class ComputedExcitation(AbstractLoad):
     """First-order wave force from tables, in place of that of the strips.
 
     F_i(t) = s Re sum_k X_i(w_k) A_k exp(i (w_k t - k x)), of the undisturbed first-order waves, along earth axes
-    (`Excitation`; Newman 1977, Marine Hydrodynamics, section 6.15); what accelerations and pressures of the water do to strips
-    and ends counts 1 - s.
+    (`Excitation`; Newman 1977, Marine Hydrodynamics, section 6.15). The forces of the water's accelerations and pressures on
+    strips and ends count 1 - s.
 
     x is where the platform is horizontally, its motion in the waves left out (`waves_at` of `Model`, "displaced"); at the
     origin with "mean". A force that follows the motion in the waves has a second-order part, which is in the quadratic
@@ -25,10 +25,11 @@ class ComputedExcitation(AbstractLoad):
     displacement passes a low-pass filter (`slow_displacement`).
 
     s is a share: 1 for the program's own excitation, with drag alone left to the strips, as OpenFAST HydroDyn has a
-    potential-flow body; 0 for that of the strips. What the program leaves out the strips then leave out with it: wetting,
-    stretching and bound waves act by drag only. Added mass stays that of the members, unless `ComputedAddedMass` has it. A
-    share s of it is that of the hull wet at rest: what wetting by waves does is in the quadratic transfer function. Of waves
-    that are sent back (`WaveReflection`) the strips alone know. An irregular sea has to be prepared with `Model.excitation`.
+    potential-flow body; 0 for that of the strips. Effects that the program leaves out are left out of the strips, too:
+    wetting, stretching and bound waves act by drag only. Added mass stays that of the members, unless `ComputedAddedMass`
+    has it. A share s of it is that of the hull wet at rest: the effect of wetting by waves is in the quadratic transfer
+    function. Reflected waves (`WaveReflection`) act on the strips alone. An irregular sea has to be prepared with
+    `Model.excitation`.
 
     `corner` is the filter's corner frequency (rad/s). `DiffractionCorrection` leaves the strips their second-order forces.
     """

@@ -18,16 +18,16 @@ class ComputedRadiation(AbstractLoad):
 
     F = -s int_0^inf K(u) v(t - u) du along body axes, K(t) = 2/pi int_0^inf B(omega) cos(omega t) d omega (Cummins 1962).
 
-    v is the velocity of the reference point (m/s) and the angular velocity (rad/s), B the radiation damping of potential
-    theory, all 36 entries, about the same point; s the share of it, complete at 1. K is that of a state space
+    v is the velocity of the reference point (m/s) and the angular velocity (rad/s). B is the radiation damping of potential
+    theory, all 36 entries, about the same point. s is the share of the force, complete at 1. K is that of a state space
     (`retardation.realise`):
 
         dr/dt = A r + B v,  F = -s C r.
 
     It gives damping B(omega), and added mass A(omega) - A(infinity) = -1/omega int_0^inf K sin(omega t) dt (Ogilvie 1964).
     Added mass at infinite frequency is not here: it stays the strips' own, or is that of `ComputedAddedMass`. With this load
-    a `Ca` means that one, and what was tuned to slow motion counts part of it twice. Linear: memory of the mean wetted hull,
-    moving with the body. Before t = 0 the platform was at rest.
+    `Ca` means added mass at infinite frequency: a `Ca` that was tuned to slow motion counts part of it twice. The law is
+    linear: memory of the mean wetted hull, moving with the body. Before t = 0 the platform was at rest.
 
     Its label is `computed_radiation.share`. A, B and C are constants: another hull has others. `highest` (rad/s) is the last
     frequency that the coefficients were computed at.

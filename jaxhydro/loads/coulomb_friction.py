@@ -18,12 +18,14 @@ class CoulombFriction(AbstractLoadPerDof):
     F_i = -f_i tanh(v_i/v0) along body axes: the same force at all speeds well above v0.
 
     v is the velocity of the reference point (m/s) and the angular velocity (rad/s). In a free decay of a spring C the
-    amplitude falls by 4 f/C per cycle, whatever it is. Sheaves, fairleads, chains on the ground, guides, cables.
+    amplitude falls by 4 f/C per cycle, whatever it is. Typical causes are sheaves, fairleads, chains on the ground, guides,
+    cables.
 
-    tanh stands for the sign: below the `speed` v0 it is a damper f/v0. So it creeps where real dry friction sticks, to the
-    equilibrium in a time f/(v0 C): what stays off it at the end of a record is not in this law. v0 is how sharply the law is
-    resolved: explicit steps have to be shorter than v0 m/f or so, m the moving mass, and derivatives want a step or two
-    within v0 of every turn: a tenth of the speed's amplitude for a fit.
+    tanh stands for the sign: below the `speed` v0 it is a damper f/v0. So it creeps to the equilibrium in a time f/(v0 C),
+    where real dry friction sticks. An offset that remains at the end of a record is not in this law.
+
+    v0 is how sharply the law is resolved. Explicit steps have to be shorter than v0 m/f or so, with m the moving mass.
+    Derivatives want a step or two within v0 of every turn. For a fit, take a tenth of the speed's amplitude.
 
     Den Hartog 1931, Forced vibrations with combined Coulomb and viscous friction (Trans. ASME 53, APM-53-9, 107-115); tanh
     for the sign is common in simulation (Andersson, Soderberg and Bjorklund 2007, Tribology International 40, 580-587).

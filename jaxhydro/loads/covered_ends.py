@@ -17,9 +17,10 @@ class CoveredEnds(AbstractLoad):
     f = c p A on every end of a pontoon, along it: takes the share c of the dynamic pressure there away again.
 
     A pontoon's end that meets a column is not wet. Pressure on it is still right where the column is loaded as if it were
-    whole: the two make up the Froude-Krylov force of the volume that both fill (c = 0, the default, as in OpenFAST HydroDyn
-    for members that end in no common joint). Strip models that load members across their axes only have c = 1; the
-    difference is the force along the pontoons, some 15 % of the surge excitation of a VolturnUS-S in long waves.
+    whole. The two then make up the Froude-Krylov force of the volume that both fill. That is c = 0, the default, as in
+    OpenFAST HydroDyn for members that end in no common joint. Strip models that load members only across their axes
+    have c = 1. The difference is the force along the pontoons: some 15 % of the surge excitation of a VolturnUS-S in long
+    waves.
     """
 
     share: Float[Array, ""] = parameter(

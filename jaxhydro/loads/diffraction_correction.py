@@ -1,4 +1,7 @@
-"""First-order wave forces from a radiation-diffraction program, around strips that keep their second-order forces."""
+"""First-order wave forces from a table, around strips that keep their second-order forces.
+
+The table is that of a radiation-diffraction program.
+"""
 
 from typing import Any, ClassVar
 
@@ -17,12 +20,13 @@ Key = tuple[Part, str, str]
 
 
 class DiffractionCorrection(AbstractLoad):
-    """Difference between a table's first-order wave force and that of the strips at rest (Newman 1977, section 6.15).
+    """Difference between a table's first-order wave force and that of the strips at rest.
 
-    F_i(t) = s Re sum_k (X_i(w_k) - S_i(w_k)) A_k exp(i (w_k t - k x)), X of the table and S of strips and ends of the upright
-    platform in still water up to its waterline, earth axes. With s = 1 the first-order force is the table's, whatever the
-    added-mass coefficients are. What strips do at second order stays: they move with the platform, are wet up to the surface,
-    and may have `SlenderBodyForces`. So no table of drift belongs beside it.
+    F_i(t) = s Re sum_k (X_i(w_k) - S_i(w_k)) A_k exp(i (w_k t - k x)), in earth axes (Newman 1977, section 6.15). X is that
+    of the table. S is that of strips and ends of the upright platform in still water up to its waterline. With s = 1 the
+    first-order force is the table's, whatever the added-mass coefficients are. The strips' second-order forces stay: strips
+    move with the platform, are wet up to the surface, and may have `SlenderBodyForces`. So no table of drift belongs beside
+    it.
 
     S is linear in coefficients c_j, which are Ca of strips and ends, and the share of covered ends: S = S_0 + sum_j c_j S_j.
     The `excitation` has the rows of X - S_0, then those of S_j for all `coefficients`. The load itself is s (X - S_0); strips

@@ -18,18 +18,18 @@ class GuidedMasses(AbstractLoad):
 
     F = -m (e . a_P) e at the point P of the body, for every earth axis e along which the mass m follows P.
 
-    A guide keeps the mass from moving in the other directions, and takes what that needs, without friction. The force is
-    what d'Alembert's principle has of a particle that is constrained to e: it does the virtual work -m (e . a_P)(e . dP)
-    (Goldstein, Poole and Safko 2002, Classical Mechanics, 3rd edition, eq. 1.45). So its inertia about the reference point
-    is m g g^T, g = (e, r x e) in body axes, r the point's place in the body. The centripetal acceleration of P along e is
-    part of a_P: exact for any finite rotation.
+    A guide keeps the mass from moving in the other directions, and takes the force that this needs, without friction. The
+    force is that of d'Alembert's principle for a particle that is constrained to e. It does the virtual work
+    -m (e . a_P)(e . dP) (Goldstein, Poole and Safko 2002, Classical Mechanics, 3rd edition, eq. 1.45). So its inertia about
+    the reference point is m g g^T, with g = (e, r x e) in body axes. r is the position of the point in the body. The
+    centripetal acceleration of P along e is part of a_P: exact for any finite rotation.
 
     A mass of which `weighs` is true also hangs on the platform: its weight -m g along z acts at P. Labels are
     `guided_masses.NAME.mass`.
 
     Attributes:
         names: Of every mass, in the order of what follows.
-        points: Place of P of every mass from the reference point, m, body axes.
+        points: Position of P of every mass from the reference point, m, body axes.
         along: Earth axes, 0 to 2 for x, y, z, of every mass.
         weighs: Whether the platform carries the weight of every mass.
         mass: Masses (kg) by name.

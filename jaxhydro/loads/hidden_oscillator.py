@@ -16,13 +16,16 @@ class HiddenOscillator(AbstractLoadPerDof):
 
     F_i = m (w0^2 e + 2 zeta w0 (w - v)), de/dt = w - v, m dw/dt = -F: a mass on a spring in the hull, along earth axes.
 
-    v is the velocity of the hull's reference point (m/s) and its angular velocity (rad/s), w that of the mass, e its
-    displacement in the hull, from where it rests. A slack tank's first mode, a damper that is not locked, a flexible tower,
-    a hanging load. m is what moves, not all of a tank's water; the declared body is taken WITHOUT it, so slow motion has the
-    mass M + m. A body that was declared with all of it is too heavy by m (`mass_error`). Its weight is not here, nor what a
-    tilted hull does to it (a mass that swings in surge pulls with m g theta, a tank has a free surface): small angles, and
-    it sits at the reference point. A mass that sits elsewhere shows in more than one degree of freedom: give it all of them.
-    It starts at rest.
+    v is the velocity of the hull's reference point (m/s) and its angular velocity (rad/s), w that of the mass. e is the
+    displacement of the mass in the hull, from where it rests. Typical causes are a slack tank's first mode, a damper that is
+    not locked, a flexible tower, a hanging load.
+
+    m is the mass that moves, not all of a tank's water. The rigid body of the model is taken WITHOUT it, so slow motion has
+    the mass M + m. A rigid body that includes all of it is too heavy by m (`mass_error`).
+
+    The weight of the mass is left out. So is the effect of a tilted hull on it: a mass that swings in surge pulls with m g
+    theta, a tank has a free surface. The law is for small angles, and the mass sits at the reference point. A mass that sits
+    elsewhere shows in more than one degree of freedom: give it all of them. It starts at rest.
 
     Den Hartog 1956, Mechanical Vibrations, chapter 3, the dynamic vibration absorber. Labels are
     `hidden_oscillator.surge.mass` (kg, kg m2), `.period` (2 pi/w0; s), `.damping_ratio` (zeta).

@@ -27,14 +27,14 @@ class Buoyancy(AbstractLoad):
 
     V and its centroid follow the finite displacement and rotation. They are those of the wetted length along the axis, and
     for a column those of the wedge of its inclined waterplane. The wedge moves the volume by I tan across and I tan^2/2
-    along the axis, I the second moment of the section at the waterline (Newman 1977, Marine Hydrodynamics, chapter 6,
+    along the axis. I is the second moment of the section at the waterline (Newman 1977, Marine Hydrodynamics, chapter 6,
     Hydrostatics, without linearisation). A column is taken as cut through its sides, not its ends.
 
     Sizes vary linearly along a piece. A prismatic column is exact at any lean; a tapered one is exact when upright or wholly
     under water, and to second order in the lean where the waterline cuts it.
 
-    `extra_force` and `extra_stiffness` are the declared hydrostatics less those of the geometry, about the upright platform
-    at its reference position: extra volume acts at the geometry's centre of buoyancy.
+    `extra_force` and `extra_stiffness` are the hydrostatics of the platform file less those of the geometry. They are about
+    the upright platform at its reference position: extra volume acts at the geometry's centre of buoyancy.
     """
 
     lower: Float[Array, "3 p"]  # m, body axes: the lower end of a piece
@@ -77,11 +77,11 @@ class Buoyancy(AbstractLoad):
         column = self.thickness == 0
         filled = jnp.where(column, wet, 1.0) * self.length
         volume, along = self._frustum(filled)
-        volume, along = (jnp.where(column, one, one * wet) for one in (volume, along))
+        volume, along = (jnp.where(column, part, part * wet) for part in (volume, along))
         # the wedge of an inclined waterplane moves volume by -I tan along a direction and by I tan^2/2 along the axis
         tangent = jnp.stack(lean) / jnp.where(column, slope, 1.0)
         pierced = jnp.where(column, covered(-low, width) - covered(-low - height, width), 0.0)
-        second, change = (one * tangent * pierced for one in self._second_moment(filled))
+        second, change = (part * tangent * pierced for part in self._second_moment(filled))
         swell = 0.5 * (change * tangent).sum(axis=0)  # where the section grows, the raised side gains more than the other loses
         volume, along = volume + swell, along + 0.5 * (second * tangent).sum(axis=0) + filled * swell
         moment = volume * self.lower + along * self.axis - (self.directions * second).sum(axis=1)
@@ -103,12 +103,15 @@ class Buoyancy(AbstractLoad):
         (a, b), (p, q) = self.size, self.taper
         area = [self.shape * part for part in (a * b, a * q + b * p, p * q)]  # by power of the distance
         parts = [[part * reach ** (i + j) / (i + j) for i, part in enumerate(area)] for j in (1, 2)]
-        volume, first = (one + two + three for one, two, three in parts)
+        volume, first = (constant + linear + quadratic for constant, linear, quadratic in parts)
         return volume, first
 
     def _second_moment(self, reach: Float[Array, " p"]) -> tuple[Float[Array, "2 p"], Float[Array, "2 p"]]:
-        """Second moment (m4) of the section `reach` (m) from the lower end, for a lean along either direction, and its change
-        per metre (m3)."""
+        """Second moment (m4) of sections for a lean along either direction, and its change per metre (m3).
+
+        Args:
+            reach: Distance (m) of the section from the lower end of each piece, (p,).
+        """
         size = self.size + self.taper * reach
         other, growth = size[::-1], self.taper[::-1]
         return self.bend * size**3 * other, self.bend * size**2 * (3 * self.taper * other + size * growth)
@@ -222,7 +225,7 @@ def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:
     """Upright slabs of a box that lies at the surface: exact while still water cuts their sides."""
     span, upward = member.b - member.a, directions[:, up] * np.sign(directions[2, up])
     across = directions[:, 1 - up]
-    found = []
+    slabs = []
     for s in (np.arange(SLABS_ALONG) + 0.5) / SLABS_ALONG:
         size = member.size(np.array(s))
         height, width = float(size[up]), float(size[1 - up])
@@ -230,8 +233,8 @@ def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:
         for u in (np.arange(SLICES_ACROSS) + 0.5) / SLICES_ACROSS - 0.5:
             lower = member.a + span * s + u * width * across - 0.5 * height * upward
             frame = np.stack([member.axis, across], axis=1)
-            found.append((lower, upward, height, extent, np.zeros(2), 1.0, 1 / 12, frame, 0.0))
-    return found
+            slabs.append((lower, upward, height, extent, np.zeros(2), 1.0, 1 / 12, frame, 0.0))
+    return slabs
 
 
 def _slices(member: Member, directions: np.ndarray) -> list[tuple]:

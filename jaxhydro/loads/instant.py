@@ -28,8 +28,8 @@ class Instant(eqx.Module):
         added_mass_part: Part of each load element that has added mass: the submerged one; where computed wave forces replace
             those of strips, the one that is wet at rest.
         added_mass_volume: Volume (m³) of that part by strip, (n,).
-        part_at_rest: Part of each load element that is wet at rest, where a table's added mass takes the place of its added
-            mass alone and strips keep what changing wetting does; else None.
+        part_at_rest: Part of each load element that is wet at rest, or None. It is stated where a table's added mass replaces
+            that of the elements alone, and strips keep the forces of changing wetting.
         strip_shape: Submerged part of each strip.
         end_shape: Areas of ends and faces.
         strip_flow: Flow past each strip.

@@ -19,14 +19,20 @@ HALF_GAUSS = 0.5 / np.sqrt(3.0)  # of a rod's length: distance of its two Gauss 
 class LiquidColumnDampers(AbstractLoad):
     """U-tubes of one cross-section, whose liquid swings between two columns.
 
-    rho A L y'' + 1/2 rho A xi |y'| y' + 2 rho A g y = -rho A B x'' for a hull that moves along the tube (Sakai, Takaeda and
-    Tamaki 1989; Gao, Kwok and Samali 1997, equation 1), with y the rise of the liquid in the column ahead, B the width of the
-    tube, L = B + 2 h the length of the liquid and xi the head loss. The hull takes the opposite of what moves the liquid.
+    For a hull that moves along the tube (Sakai, Takaeda and Tamaki 1989; Gao, Kwok and Samali 1997, equation 1):
 
-    Here the hull moves in six degrees of freedom. The liquid's kinetic energy is 1/2 v M v + rho A y' c v + 1/2 rho A L y'^2,
-    with v the velocity of the body, M the mass matrix of the liquid at rest in the tube, and c = (integral of dl, integral of
-    s x dl) along it: Kirchhoff's equations (Lamb 1932, Hydrodynamics, section 124) with one more coordinate. Gravity acts on
-    the liquid where it is. What y changes in M is left out, and so is a column that runs dry.
+        rho A L y'' + 1/2 rho A xi |y'| y' + 2 rho A g y = -rho A B x''.
+
+    y is the rise of the liquid in the column ahead, and B the width of the tube. L = B + 2 h is the length of the liquid,
+    and xi the head loss. The hull takes the opposite of the force that moves the liquid.
+
+    Here the hull moves in six degrees of freedom. The liquid's kinetic energy is
+
+        1/2 v M v + rho A y' c v + 1/2 rho A L y'^2,
+
+    with v the velocity of the body and M the mass matrix of the liquid at rest in the tube. c = (integral of dl, integral of
+    s x dl) along the tube. The equations are Kirchhoff's (Lamb 1932, Hydrodynamics, section 124) with one more coordinate.
+    Gravity acts on the liquid where it is. The change of M with y is left out, and so is a column that runs dry.
 
     The memory is y and p = c v + L y', from rest. The liquid is not part of the rigid body. Labels are
     `liquid_column_dampers.NAME.area` (m²) and `.head_loss` (-).
@@ -63,7 +69,10 @@ class LiquidColumnDampers(AbstractLoad):
         return width * jnp.concatenate([along, turned])
 
     def particles(self, i: int) -> tuple[Float[Array, "6 3"], Float[Array, " 6"]]:
-        """Places (m, body axes) and lengths (m) of tube for which six particles of the liquid at rest stand, exactly."""
+        """Positions (m, body axes) and lengths of tube (m) of six particles of the liquid at rest.
+
+        The six particles stand for all the liquid, exactly.
+        """
         along, width, height = self.directions[i], self.sizes[i, 0], self.sizes[i, 1]
         up = jnp.array([0.0, 0.0, 1.0])
         ends = [self.points[i] + sign * 0.5 * width * along + 0.5 * height * up for sign in (-1, 1)]
@@ -94,14 +103,14 @@ class LiquidColumnDampers(AbstractLoad):
             pushed = width * gravity @ along + 2 * rise * gravity @ up - 0.5 * self.head_loss[name] * jnp.abs(rising) * rising
             rates.append(jnp.stack([rising, pushed]))
             places, lengths = self.particles(i)
-            arms = jnp.concatenate([jnp.tile(jnp.eye(3), (6, 1, 1)), jnp.stack([skew(place) for place in places])], axis=1)
+            arms = jnp.concatenate([jnp.tile(jnp.eye(3), (6, 1, 1)), jnp.stack([skew(point) for point in places])], axis=1)
             still = line * jnp.einsum("q,qij,qkj->ik", lengths, arms, arms)
-            own = still - line / length * flow[:, None] * flow
+            added = still - line / length * flow[:, None] * flow
             carried = still @ now.velocity + line * flow * rising  # momentum of the liquid
             turning = jnp.concatenate([cross(spin, carried[:3]), cross(spin, carried[3:]) + cross(velocity, carried[:3])])
             moved = line * (rise * width * along + rise**2 * up)  # first moment (kg m) of what has gone from column to column
             weight = line * jnp.einsum("q,qij,j->i", lengths, arms, gravity)
             lean = jnp.concatenate([jnp.zeros(3), cross(moved, gravity)])
-            inertia = inertia + own
-            force = force + own[:, :3] @ cross(spin, velocity) - line / length * flow * pushed - turning + weight + lean
+            inertia = inertia + added
+            force = force + added[:, :3] @ cross(spin, velocity) - line / length * flow * pushed - turning + weight + lean
         return Action(body_force=force, added_mass=inertia, memory_rate=jnp.stack(rates, axis=1))

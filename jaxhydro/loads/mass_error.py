@@ -14,17 +14,17 @@ INERTIA = "inertia about the centre of mass in {} that was not declared"
 
 
 class MassError(AbstractLoad):
-    """Difference between the true and the declared rigid body.
+    """Difference between the true rigid body and that of the model.
 
-    F = -(M' - M) a - (what turns) + (W' - W): the body with M + m, c + d, I + dI less the body M, c, I that is declared.
+    F = -(M' - M) a - (G' - G) + (W' - W): the body with M + m, c + d, I + dI less the model's body M, c, I.
 
-    m is mass at the centre of mass, d = (dx, 0, dz) how much the centre of all the mass is off, dI inertia about the centre
-    of mass. The difference of inertia, of gyroscopic and centripetal force, and of weight: exact for any motion. `total`
-    (kg) and `centre` (m, body axes) are what the model's body has.
+    m is mass at the centre of mass. d = (dx, 0, dz) is the error of the centre of all the mass. dI is inertia about the
+    centre of mass. G is the gyroscopic and centripetal force, W the weight: exact for any motion. `total` (kg) and `centre`
+    (m, body axes) are those of the model's body.
 
-    Mass that is added weighs: the platform sinks by m/(rho Aw). Where the draught was ballasted to what it should be, it is
-    the volume that is also wrong, and `added_mass` in surge, sway and heave is the better name for what is left. In one free
-    decay it cannot be told from stiffness, nor dz from the metacentre. Mass and inertia that come out negative are nonsense.
+    Mass that is added weighs: the platform sinks by m/(rho Aw). Where the draught was ballasted to its target, the volume is
+    also wrong. Then `added_mass` in surge, sway and heave is the better name for the rest. In one free decay it cannot be
+    told from stiffness, nor dz from the metacentre. Mass and inertia that come out negative are nonsense.
 
     Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 3.3. Labels are `mass_properties.mass`,
     `.centre_x`, `.centre_z`, `.inertia_roll`, `.inertia_pitch`, `.inertia_yaw`.

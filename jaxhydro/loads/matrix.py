@@ -22,7 +22,9 @@ Entries = Mapping[str, Float[Array, ""] | float]
 
 
 def by_entry(symbol: str, quantity: str, cause: str) -> Any:
-    """Field of a load with one parameter, `prefix.B15`, for each entry of a matrix; none on the diagonal is negative.
+    """Field of a load with one parameter, `prefix.B15`, for each entry of a matrix.
+
+    Parameters on the diagonal are not negative.
 
     Args:
         symbol: Key of `UNITS`.
@@ -53,7 +55,15 @@ def by_pair(symbol: str, quantity: str) -> Any:
 
 
 def meaning(quantity: str, cause: str, key: str) -> str:
-    """Meaning of an entry: "linear damping in surge", or "linear damping: surge force from pitch velocity"."""
+    """Meaning of an entry of a matrix, in words.
+
+    Examples are "linear damping in surge", and "linear damping: surge force from pitch velocity".
+
+    Args:
+        quantity: Quantity of the matrix, for example "linear damping".
+        cause: Factor of the matrix, for example "velocity".
+        key: Key of the entry, for example "B15".
+    """
     i, j = row_and_column(key)
     if i == j:
         return f"{quantity} in {DOFS[i]}"

@@ -15,9 +15,9 @@ class MooringLines(AbstractLines):
 
     T = k max(0, l - l0) along the straight line from the displaced fairlead to the anchor.
 
-    The geometric law of a massless elastic line (Faltinsen 1990, Sea Loads, chapter 8), so that pretension stiffness,
-    large offsets and slack come out by themselves. Labels are `mooring.line1.stiffness` (N/m) and
-    `mooring.line1.unstretched_length` (m).
+    This is the geometric law of a massless elastic line (Faltinsen 1990, Sea Loads, chapter 8). It includes pretension
+    stiffness, large offsets and slack. Labels are `mooring.line1.stiffness` (N/m) and `mooring.line1.unstretched_length`
+    (m).
     """
 
     stiffness: Mapping[str, Float[Array, ""] | float] = parameters(
@@ -33,7 +33,9 @@ class MooringLines(AbstractLines):
     ) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
         """Tension (N), (l,), and unit vectors to the anchors in body axes, (3, l)."""
         lines = [f"line{i + 1}" for i in range(self.anchor.shape[1])]
-        stiffness, unstretched = (jnp.stack([of[line] for line in lines]) for of in (self.stiffness, self.unstretched_length))
+        stiffness, unstretched = (
+            jnp.stack([mapping[line] for line in lines]) for mapping in (self.stiffness, self.unstretched_length)
+        )
         length, towards = self.chord(position, matrix)
         return stiffness * jnp.maximum(length - unstretched, 0.0), towards
 

@@ -16,9 +16,9 @@ class MooringNonlinearity(AbstractLoadPerDof):
 
     F_i = -(c2 x |x| + s2 x^2 + c3 x^3), x = x_i the displacement along earth axes (m, rad) from the reference position.
 
-    What a mooring's tension does beyond the stiffness that the model has. Each degree of freedom has its own potential, so
-    no energy is lost, and surge does not stiffen by sway. c2 and c3 change the period with amplitude (by the first power and
-    the second), s2 shifts the mean and is what a mooring with one line fore and two aft has. Polynomials: good within the
+    It is the mooring's restoring beyond the stiffness that the model has. Each degree of freedom has its own potential, so
+    no energy is lost, and surge does not stiffen by sway. c2 changes the period with the first power of the amplitude, c3
+    with the second. s2 shifts the mean: a mooring with one line fore and two aft has it. Polynomials are good within the
     displacements that they were fitted to, and with a negative sign unstable beyond some. x counts from the reference
     position, not from the equilibrium: with a mean offset, all three change the stiffness there.
 
@@ -33,5 +33,5 @@ class MooringNonlinearity(AbstractLoadPerDof):
 
     def act(self, now: Instant, memory: Any) -> Action:
         x = self.dofs_only(now.position)
-        odd, even, cubic = (self.entries(one, 0.0) for one in (self.odd_quadratic, self.even_quadratic, self.cubic))
+        odd, even, cubic = (self.entries(mapping, 0.0) for mapping in (self.odd_quadratic, self.even_quadratic, self.cubic))
         return Action(force=self.all_dofs(-(odd * jnp.abs(x) + even * x + cubic * x**2) * x))

@@ -23,11 +23,12 @@ class NonlinearHydrostatics(AbstractLoadPerDof):
     where the waterplane grows or shrinks with draught. It is what the model's buoyancy lacks: members that are wetted
     instantaneously have their own geometry's share of it already, a stiffness matrix has none.
 
-    D is the change of pitch stiffness per metre of heave, d(rho g V GM)/dz: heave at twice the natural frequency of pitch
-    makes pitch grow, Mathieu's instability (Haslum and Faltinsen 1999, OTC 10953). Roll with C3 of a wall-sided hull, GZ =
-    (GM + BM/2 tan^2) sin (Barrass and Derrett, Ship Stability for Masters and Mates, the wall-sided formula), has, by
-    expansion and beyond rho g V GM x, C3 = rho g V (BM/2 - GM/6) and C5 = rho g V (BM/4 + GM/120): within 1 % of GZ at 30
-    degrees where BM = 2 GM.
+    D is the change of pitch stiffness per metre of heave, d(rho g V GM)/dz. Heave at twice the natural frequency of pitch
+    makes pitch grow: Mathieu's instability (Haslum and Faltinsen 1999, OTC 10953).
+
+    Roll of a wall-sided hull has GZ = (GM + BM/2 tan^2) sin (Barrass and Derrett, Ship Stability for Masters and Mates, the
+    wall-sided formula). By expansion, and beyond rho g V GM x, it has C3 = rho g V (BM/2 - GM/6) and C5 = rho g V (BM/4 +
+    GM/120). That is within 1 % of GZ at 30 degrees where BM = 2 GM.
 
     Haslum and Faltinsen 1999, OTC 10953, for the coupling; polynomials are empirical, and good only within what they were
     fitted to. Labels are `nonlinear_hydrostatics.heave.even_quadratic`, `.heave.pitch_squared`, and `.cubic`, `.quintic` for
@@ -43,14 +44,23 @@ class NonlinearHydrostatics(AbstractLoadPerDof):
 
     @classmethod
     def neutral(cls, dofs: Iterable[str] = ("heave", "roll", "pitch"), **values: float | None) -> Self:
-        """Load at its neutral value in some of heave, roll and pitch; the parameters of heave alone are given to no other."""
-        found = super().neutral(dofs, **values)
-        heave_only = {name: getattr(found, name) for name in ("even_quadratic", "pitch_squared")}
-        return replace(found, **{name: {k: v for k, v in one.items() if k == "heave"} for name, one in heave_only.items()})
+        """Load at its neutral value in some of heave, roll and pitch.
+
+        The parameters of heave alone are given to no other.
+
+        Args:
+            dofs: Degrees of freedom that it acts in.
+            values: Values of parameters, by name, in place of neutral ones; None is ignored.
+        """
+        load = super().neutral(dofs, **values)
+        heave_only = {name: getattr(load, name) for name in ("even_quadratic", "pitch_squared")}
+        return replace(
+            load, **{name: {k: v for k, v in mapping.items() if k == "heave"} for name, mapping in heave_only.items()}
+        )
 
     def act(self, now: Instant, memory: Any) -> Action:
         x = self.dofs_only(now.position)
-        even, cubic, quintic = (self.entries(one, 0.0) for one in (self.even_quadratic, self.cubic, self.quintic))
+        even, cubic, quintic = (self.entries(mapping, 0.0) for mapping in (self.even_quadratic, self.cubic, self.quintic))
         force = self.all_dofs(-(even + cubic * x + quintic * x**3) * x**2)
         if "heave" in self.pitch_squared:
             heave, pitch = now.position[2], now.position[4]

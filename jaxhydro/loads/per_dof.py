@@ -1,4 +1,4 @@
-"""Base of loads with a law in each degree of freedom: their parameters, and vectors over the degrees of freedom they have.
+"""Base of loads with a law in each degree of freedom, and fields for their parameters.
 
 Vectors over the degrees of freedom that a load acts in are "k" long, in the order of `DOFS`.
 """
@@ -38,18 +38,22 @@ def by_dof(
         neutral: Neutral value.
     """
     both = [
-        one if isinstance(one, Parameter) else Parameter(one, meaning, lower, upper, neutral) for one in (translation, rotation)
+        unit if isinstance(unit, Parameter) else Parameter(unit, meaning, lower, upper, neutral)
+        for unit in (translation, rotation)
     ]
 
     def about(load: Any, dof: str) -> Parameter:
-        found = both[dof in DOFS[3:]]
-        return found._replace(meaning=found.meaning.format(dof=dof))
+        parameter = both[dof in DOFS[3:]]
+        return parameter._replace(meaning=parameter.meaning.format(dof=dof))
 
     return parameters(about)
 
 
 class AbstractLoadPerDof(AbstractLoad):
-    """Base class of loads with a law in each degree of freedom: a mapping from degrees of freedom for each parameter."""
+    """Base class of loads with a law in each degree of freedom.
+
+    Each parameter is a mapping from degrees of freedom.
+    """
 
     allowed: ClassVar[tuple[str, ...]] = DOFS
 
@@ -68,17 +72,17 @@ class AbstractLoadPerDof(AbstractLoad):
             dofs: Degrees of freedom that it acts in.
             values: Values of parameters, by name, in place of neutral ones; None is ignored.
         """
-        empty, found = cls(), {}
+        empty, mappings = cls(), {}
         for field, about in empty._per_dof().items():
-            given = values.get(field)
-            found[field] = {dof: about(empty, dof).neutral if given is None else given for dof in dofs}
-        return cls(**found)
+            value = values.get(field)
+            mappings[field] = {dof: about(empty, dof).neutral if value is None else value for dof in dofs}
+        return cls(**mappings)
 
     @classmethod
     def _per_dof(cls) -> dict[str, Any]:
-        """What is known of the parameters, by field."""
-        of = {name: field.metadata.get(METADATA_KEY) for name, field in cls.__dataclass_fields__.items()}
-        return {name: one.about for name, one in of.items() if one is not None}
+        """Unit, meaning, bounds and neutral value of the parameters, by field."""
+        metadata = {name: field.metadata.get(METADATA_KEY) for name, field in cls.__dataclass_fields__.items()}
+        return {name: entry.about for name, entry in metadata.items() if entry is not None}
 
     @property
     def dofs(self) -> tuple[str, ...]:
@@ -100,13 +104,13 @@ class AbstractLoadPerDof(AbstractLoad):
         """Entries of a six-vector for the load's degrees of freedom, (k,)."""
         return six[np.array([DOFS.index(dof) for dof in self.dofs], dtype=int)]
 
-    def all_dofs(self, some: Float[Array, " k"]) -> Float[Array, "6"]:
+    def all_dofs(self, values: Float[Array, " k"]) -> Float[Array, "6"]:
         """Six-vector from values over the load's degrees of freedom, 0 on the others.
 
         By a product: scatters are slow on a CPU.
         """
         basis = np.array([[dof == other for other in DOFS] for dof in self.dofs], float).reshape(-1, 6)
-        return some @ basis
+        return values @ basis
 
 
 def magnitude(x: Float[Array, "..."], small: float) -> Float[Array, "..."]:

@@ -17,16 +17,17 @@ class RadiationMemory(AbstractLoadPerDof):
 
     F_i = -int_0^inf K_i(s) v_i(t - s) ds along body axes, of transfer b 2 zeta w0 s/(s^2 + 2 zeta w0 s + w0^2).
 
-    v is the velocity of the reference point (m/s) and the angular velocity (rad/s). The one kernel with two states that has
-    what potential theory asks of a retardation function (Perez and Fossen 2008, Modeling, Identification and Control 29, 1-19):
-    K(0) = 2 zeta w0 b finite, no damping at frequencies 0 and infinity, no force on what rests, passive. Radiation damping
-    is
+    v is the velocity of the reference point (m/s) and the angular velocity (rad/s). The kernel is the only one with two
+    states that has the properties of a retardation function in potential theory. They are (Perez and Fossen 2008, Modeling,
+    Identification and Control 29, 1-19): K(0) = 2 zeta w0 b finite, no damping at frequencies 0 and infinity, no force on a
+    body at rest, passive. Radiation damping is
 
         B(w) = b (2 zeta w0 w)^2/((w0^2 - w^2)^2 + (2 zeta w0 w)^2), at most b, at w0,
 
-    and added mass A(w) = 2 zeta w0 b (w0^2 - w^2)/(same): that of the model is then the one at infinite frequency, to which
-    A(0) = 2 zeta b/w0 comes in slow motion. A real platform's B(w) has more humps and no coupling between degrees of freedom
-    is here: an effect to be found, not a replacement for a computed kernel. Before t = 0 the platform was at rest.
+    and added mass A(w) = 2 zeta w0 b (w0^2 - w^2)/(same). The model's added mass is then the one at infinite frequency, to
+    which A(0) = 2 zeta b/w0 comes in slow motion. A real platform's B(w) has more humps, and no coupling between degrees of
+    freedom is here. It is an effect to be found, not a replacement for a computed kernel. Before t = 0 the platform was at
+    rest.
 
     Labels are `radiation_memory.heave.strength` (b; N s/m, N m s/rad), `.frequency` (w0; rad/s), `.damping_ratio` (zeta).
     """

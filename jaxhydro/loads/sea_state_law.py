@@ -24,10 +24,10 @@ class SeaStateLaw(AbstractLoad):
 
     c = c0 (Hs/Hs0)^a (Tp/Tp0)^b in place of coefficients c0 of a load, in the sea state that it is in.
 
-    A power of the sea state's scale is how drag coefficients are commonly laid out against the Keulegan-Carpenter number,
-    itself proportional to Hs in a given basin (Sarpkaya and Isaacson 1981, Mechanics of Wave Forces on Offshore Structures,
-    chapter 3); the exponents are empirical. In still water, and in a sea that is not known, c = c0: that is what it is in
-    the `reference` sea state. All exponents 0 give the load itself.
+    Drag coefficients are commonly laid out against the Keulegan-Carpenter number, itself proportional to Hs in a given
+    basin. So they are powers of the sea state's scale (Sarpkaya and Isaacson 1981, Mechanics of Wave Forces on Offshore
+    Structures, chapter 3). The exponents are empirical. In still water, and in a sea that is not known, c = c0: that is the
+    value in the `reference` sea state. All exponents 0 give the load itself.
     """
 
     load: AbstractLoad
@@ -65,10 +65,10 @@ class SeaStateLaw(AbstractLoad):
 
     def present(self) -> dict[str, Float[Array, ""]]:
         """Coefficients of the load in the present sea state."""
-        found = self.load.values
+        values = self.load.values
         for (base, symbol), exponent in self.exponents.items():
-            found[base] = found[base] * jnp.exp(exponent * self.logs[symbol])
-        return found
+            values[base] = values[base] * jnp.exp(exponent * self.logs[symbol])
+        return values
 
     def act(self, now: Instant, memory: Any) -> Action:
         return self.load.at_values(self.present()).act(now, memory)
@@ -111,22 +111,22 @@ def with_exponents(
         UnknownName: No load has the coefficient of an exponent (a KeyError).
         ValueError: A law has another reference, or the reference is not above 0.
     """
-    left, found = set(exponents), []
+    unused, changed = set(exponents), []
     if not all(math.isfinite(x) and x > 0 for x in reference):
         raise ValueError(f"reference: expected a significant height and a peak period above 0, found {reference}")
     for load in loads:
-        own = [key for key in exponents if key[0] in load.values]
-        left -= set(own)
-        mine = {(label, EXPONENT_BASES[over]): exponents[label, over] for label, over in own}
+        keys = [key for key in exponents if key[0] in load.values]
+        unused -= set(keys)
+        mine = {(label, EXPONENT_BASES[over]): exponents[label, over] for label, over in keys}
         if not mine:
-            found.append(load)
+            changed.append(load)
         elif not isinstance(load, SeaStateLaw):
-            found.append(SeaStateLaw.of(load, mine, reference))
+            changed.append(SeaStateLaw.of(load, mine, reference))
         elif load.reference != reference:
             raise ValueError(f"expected the reference {load.reference} of the law that is there, found {reference}")
         else:
-            found.append(SeaStateLaw.of(load.load, {**load.exponents, **mine}, reference))
-    if left:
-        lost = next(label for label, over in exponents if (label, over) in left)
+            changed.append(SeaStateLaw.of(load.load, {**load.exponents, **mine}, reference))
+    if unused:
+        lost = next(label for label, over in exponents if (label, over) in unused)
         raise unknown("coefficient", lost, [label for load in loads for label in load.values])
-    return tuple(found)
+    return tuple(changed)

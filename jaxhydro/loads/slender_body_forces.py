@@ -10,7 +10,9 @@ from jaxhydro.parameters import parameter
 
 
 class SlenderBodyForces(AbstractLoad):
-    """Second-order forces of potential flow on slender members, beyond those of displaced strips and moving surfaces.
+    """Second-order forces of potential flow on slender members.
+
+    They are those beyond the forces of displaced strips and moving surfaces.
 
     Morison's inertia takes the water's acceleration at a point, du/dt. Strips that move with the platform, wet up to the
     surface, have some second-order forces by that. `share` times the others is added:

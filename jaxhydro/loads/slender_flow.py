@@ -12,8 +12,8 @@ from jaxhydro.hull.submerged import EndShape, StripShape
 class SlenderFlow(NamedTuple):
     """Relative velocity of the water and its slopes at strips and ends, body axes.
 
-    Across a strip the relative velocity is w (m/s), along its axis W. M is its added mass per length along its directions
-    d1 and d2, E the gradient of the water's velocity (1/s), s the strip's axis, and Omega the angular velocity of the body.
+    Across a strip the relative velocity is w (m/s), along its axis W. M is its added mass per length along its directions d1
+    and d2. E is the gradient of the water's velocity (1/s), s the strip's axis, and Omega the angular velocity of the body.
 
     Attributes:
         share: Fraction (-) of the forces that acts.
@@ -42,7 +42,9 @@ class SlenderFlow(NamedTuple):
     def on_strips(
         self, hull: Hull, shape: StripShape, mass: Float[Array, "2 n"]
     ) -> tuple[Float[Array, "2 n"], Float[Array, "6"]]:
-        """Force on strips beyond M times the water's and the strip's acceleration, and the moment about their axes.
+        """Second-order force on strips, and the moment about their axes.
+
+        The force is that beyond M times the water's and the strip's acceleration:
 
         f_d = M_d w_d (s . E s) - 2 M_d W d . (Omega x s) + (M_e - M_d) w_e (d . E e + d . (Omega x e)), e the other
         direction, and the moment (M_1 - M_2) w_1 w_2 about the axis.
@@ -68,9 +70,9 @@ class SlenderFlow(NamedTuple):
     ) -> tuple[Float[Array, " m"], Float[Array, "6"]]:
         """Force where the added mass of members ends: along the axis, and across it.
 
-        With M the added mass per length beside the end, the pressure is lower by M w²/2 over the section, and water takes the
-        momentum M w with it. The forces are n w . M w / 2 and -(n . s) W M w, with n the outward normal. They close the strip's
-        forces: on a body under still water all together are Kirchhoff's.
+        With M the added mass per length beside the end, the pressure is lower by M w²/2 over the section. Water takes the
+        momentum M w with it. The forces are n w . M w / 2 and -(n . s) W M w, with n the outward normal. They close the
+        strip's forces: on a body under still water all together are Kirchhoff's.
 
         Args:
             hull: The hull.

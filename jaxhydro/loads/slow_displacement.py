@@ -9,14 +9,14 @@ CORNER = 2 * math.pi * 0.02  # rad/s, at the size of VolturnUS-S: between slow s
 
 
 def memory_at_rest() -> Float[Array, "2 2"]:
-    """Memory of the filter before t = 0: the part of the displacement left out (m), and the velocity of the rest (m/s)."""
+    """Memory of the filter before t = 0: y (m) and z' (m/s) of `memory_rate`, each of both axes."""
     return jnp.zeros((2, 2))
 
 
 def memory_rate(memory: Float[Array, "2 2"], velocity: Float[Array, "2"], corner: float) -> Float[Array, "2 2"]:
     """Rate of the memory: a low-pass filter of second order (Butterworth).
 
-    With u the velocity, y the part of the displacement that is left out, z' the velocity of the rest, and c the corner,
+    u is the velocity, y the part of the displacement that is left out, z' the velocity of the rest, and c the corner. Then
     dy/dt = u - z' and dz'/dt = c² y - sqrt(2) c z'.
 
     Args:

@@ -12,7 +12,7 @@ class StaticForce(AbstractLoadPerDof):
 
     F_i = f_i, constant along earth axes, at the reference point.
 
-    A mean that nobody declared: a cable's pull, a rotor's thrust, wrong ballast or trim, a pretension, a steady wind. Where
+    A mean that the model lacks: a cable's pull, a rotor's thrust, wrong ballast or trim, a pretension, a steady wind. Where
     the stiffness is constant it is the same as a zero of the instrument that is off (f/C): only a period that changes with
     the offset tells the two apart.
 

@@ -54,7 +54,11 @@ class StripInertia(AbstractLoad):
     def _second_order(
         self, now: Instant, mass: Float[Array, "2 e"]
     ) -> tuple[Float[Array, "2 n"], Float[Array, " m"], Float[Array, "6"]] | tuple[None, None, None]:
-        """Second-order forces on the added mass: on strips, ends and body (`SlenderBodyForces`); None without them."""
+        """Second-order forces on the added mass (`SlenderBodyForces`), or None.
+
+        Returns:
+            Force (N) on strips, (2, n), and on ends, (m,), and force and moment (N, N m) on the body, (6,).
+        """
         if (slender := now.slender) is None:
             return None, None, None
         of_strips = now.over_strips(mass)

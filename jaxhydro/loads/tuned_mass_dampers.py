@@ -19,11 +19,11 @@ from jaxhydro.rotations import cross
 class TunedMassDampers(AbstractLoad):
     """Masses that slide along a line of the hull, each held by a spring and a damper.
 
-    m (n . a) = m n . (g - g0) - m w0^2 e - 2 zeta m w0 de/dt, with e the displacement along the line n from where the mass
-    rests in the upright hull, a the acceleration of the mass, w0 = 2 pi/period. The hull takes the opposite force, and what
-    guides need to hold the mass on its line: exact for any finite rotation (Goldstein, Poole and Safko 2002, Classical
-    Mechanics, eq. 4.91, with the Coriolis acceleration of what slides). The spring bears the weight of the mass along the
-    line of the upright hull, g0.
+    m (n . a) = m n . (g - g0) - m w0^2 e - 2 zeta m w0 de/dt. e is the displacement along the line n from where the mass
+    rests in the upright hull. a is the acceleration of the mass, and w0 = 2 pi/period. The hull takes the opposite force,
+    and that with which guides hold the mass on its line. This is exact for any finite rotation (Goldstein, Poole and Safko
+    2002, Classical Mechanics, eq. 4.91, with the Coriolis acceleration of the sliding mass). The spring bears the weight of
+    the mass along the line of the upright hull, g0.
 
     Den Hartog 1956, Mechanical Vibrations, section 3.2: the dynamic vibration absorber. The memory is e and the velocity
     n . v of the mass. It starts at rest. The mass is not part of the rigid body. Labels are `tuned_mass_dampers.NAME.mass`
@@ -58,9 +58,10 @@ class TunedMassDampers(AbstractLoad):
         return jnp.zeros((2, len(self.names)))
 
     def retardation(self, omega: float) -> Complex[np.ndarray, "6 6"]:
-        """Response of the masses along their lines with the dampers held: of their inertia, and of their weight on a lean.
+        """Response of the masses along their lines, with the dampers held.
 
-        Natural modes of the hull are those with its dampers held.
+        It is that of their inertia, and of their weight on a lean. Natural modes of the hull are those with its dampers
+        held.
         """
         added = np.zeros((6, 6))
         for name, point, direction in zip(self.names, np.asarray(self.points), np.asarray(self.directions), strict=True):
@@ -77,16 +78,16 @@ class TunedMassDampers(AbstractLoad):
         for i, name in enumerate(self.names):
             mass, along, (displaced, speed) = self.mass[name], self.directions[i], memory[:, i]
             frequency = 2 * math.pi / self.period[name]
-            place = self.points[i] + displaced * along
-            carried = velocity + cross(spin, place)  # velocity of the hull at the mass
+            point = self.points[i] + displaced * along
+            carried = velocity + cross(spin, point)  # velocity of the hull at the mass
             sliding = speed - along @ carried
             pull = frequency**2 * displaced + 2 * self.damping_ratio[name] * frequency * sliding  # per mass
             upright = -now.environment.gravity * along[2]
             turning = cross(spin, along) @ carried  # n turns with the hull
             rates.append(jnp.stack([sliding, along @ gravity - upright - pull + turning]))
-            inward = cross(spin, cross(spin, place)) + 2 * sliding * cross(spin, along) - gravity
+            inward = cross(spin, cross(spin, point)) + 2 * sliding * cross(spin, along) - gravity
             across = jnp.eye(3) - along[:, None] * along
-            arm = jnp.concatenate([jnp.eye(3), jnp.stack([cross(place, axis) for axis in jnp.eye(3)], axis=1)])  # (6, 3)
+            arm = jnp.concatenate([jnp.eye(3), jnp.stack([cross(point, axis) for axis in jnp.eye(3)], axis=1)])  # (6, 3)
             inertia = inertia + mass * arm @ across @ arm.T
             force = force + mass * arm @ ((pull + upright) * along - across @ inward)
         return Action(body_force=force, added_mass=inertia, memory_rate=jnp.stack(rates, axis=1))

@@ -18,10 +18,10 @@ class Umbilical(AbstractLoad):
 
     F = (p - k x, -k y, -m g) at the point (0, 0, h) of the body, x and y its displacement along earth axes; and its mass m.
 
-    k (N/m) is the horizontal spring of a slack cable, alike along x and y, p (N) its mean pull along x, m (kg) the part of
-    it that hangs on the platform: weight and inertia of a point that moves with the hull. As all this acts at the displaced
-    point, surge couples with pitch, and sway with roll, by the lever h. No drag, no damping, no vertical spring, no lever in
-    yaw: where the cable leaves off the axis, `static_force` in yaw is what is left.
+    k (N/m) is the horizontal spring of a slack cable, alike along x and y. p (N) is its mean pull along x. m (kg) is the
+    part of it that hangs on the platform: weight and inertia of a point that moves with the hull. As all this acts at the
+    displaced point, surge couples with pitch, and sway with roll, by the lever h. There is no drag, no damping, no vertical
+    spring, and no lever in yaw. Where the cable leaves off the axis, the moment is left to `static_force` in yaw.
 
     Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 3.3, for the point's mass; spring and
     pull are the cable's statics, linearised, and ours. Labels are `umbilical.stiffness`, `.pull`, `.mass`, `.height` (h; m).
@@ -37,8 +37,8 @@ class Umbilical(AbstractLoad):
         stiffness, pull, mass, height = self.stiffness, self.pull, self.mass, self.height
         zero = jnp.zeros_like(height)
         arm, spin = jnp.stack([zero, zero, height]), now.velocity[3:]
-        place = now.position[:3] + height * now.rotation[:, 2]  # from the reference point's own reference position
-        earth = jnp.stack([pull - stiffness * place[0], -stiffness * place[1], -mass * now.environment.gravity])
+        point = now.position[:3] + height * now.rotation[:, 2]  # from the reference point's own reference position
+        earth = jnp.stack([pull - stiffness * point[0], -stiffness * point[1], -mass * now.environment.gravity])
         force = earth @ now.rotation - mass * cross(spin, cross(spin, arm))
         lever = mass * skew(arm)
         upper = jnp.concatenate([mass * jnp.eye(3), -lever], axis=1)

@@ -12,18 +12,22 @@ STEADY = "share of it in {dof} that goes with the waves' mean square, not their 
 class WaveDriftDamping(AbstractLoadPerDof):
     """Damping of slow motion proportional to the squared wave height.
 
-    F_i = -alpha_i (s_i Hs^2/8 + (1 - s_i) |a|^2) v_i along body axes, a the complex elevation of the undisturbed waves at
-    the origin, eta = Re a, and Hs^2/8 the mean of |a|^2.
+    F_i = -alpha_i (s_i Hs^2/8 + (1 - s_i) |a|^2) v_i along body axes. a is the complex elevation of the undisturbed waves at
+    the origin, eta = Re a. Hs^2/8 is the mean of |a|^2.
 
-    A slow velocity changes the mean second-order force, to first order in it a damping that goes with the square of the
-    wave's amplitude (Wichers 1982, On the low-frequency surge motions of vessels moored in high seas, OTC 4437; Faltinsen
-    1990, Sea Loads on Ships and Offshore Structures, chapter 5, section on viscous and wave-drift damping). Here one number
-    per degree of freedom, whatever the frequency of the waves, and on the whole velocity where theory has the slow one: what
-    it takes from wave-frequency motion is counted in alpha. `steady` (s) is 1 where the damping is that of the sea state, as
-    it is used in practice, and 0 where it comes and goes with groups of waves, as Newman's argument for slow drift would
-    have it. |a|^2 holds differences of frequencies only. Passive.
+    A slow velocity changes the mean second-order force. To first order in the velocity this is a damping that goes with the
+    square of the wave's amplitude. Here it is one number per degree of freedom, whatever the frequency of the waves. It is
+    on the whole velocity where theory has the slow one: alpha counts what it takes from wave-frequency motion.
+
+    `steady` (s) is 1 where the damping is that of the sea state, as it is used in practice. It is 0 where the damping comes
+    and goes with groups of waves, as Newman's argument for slow drift would have it. |a|^2 holds differences of frequencies
+    only. Passive.
 
     Labels are `wave_drift_damping.surge.coefficient` (alpha; N s/m3, N s/(m rad)) and `.steady` (s; -).
+
+    References:
+        Wichers (1982), On the low-frequency surge motions of vessels moored in high seas, OTC 4437; Faltinsen (1990), Sea
+        Loads on Ships and Offshore Structures, chapter 5, section on viscous and wave-drift damping.
     """
 
     coefficient: PerDof = by_dof("N s/m3", "N s/(m rad)", "damping in {dof} per squared wave amplitude", 0.0)

@@ -17,10 +17,10 @@ class WaveExcitation(AbstractLoad):
 
     f = (Cp - 1) rho V a_water on strips, across the member, and (Cp - 1) p A on the ends of columns, along it.
 
-    Strips are excited by rho V (Ca + 1) a_water: the 1 is the Froude-Krylov force, and Cp where that is not what the waves'
-    pressure does, as near columns and pontoons that shade each other, or in waves that are not long. Without it one Ca has
-    to be right for the mass and for the excitation. OpenFAST HydroDyn has it by member (MemberCp, AxCp). On members that
-    diffract the waves it is (Cp - 1) / 2 of the force of MacCamy and Fuchs, half of which is pressure in long waves. The
+    Strips are excited by rho V (Ca + 1) a_water, where the 1 is the Froude-Krylov force. Cp takes its place where the waves'
+    pressure is another: near columns and pontoons that shade each other, or in waves that are not long. Without it one Ca
+    has to be right for the mass and for the excitation. OpenFAST HydroDyn has it by member (MemberCp, AxCp). Members that
+    diffract the waves have (Cp - 1) / 2 of the force of MacCamy and Fuchs. Half of that force is pressure in long waves. The
     ends of pontoons are left as they are (`CoveredEnds`).
 
     Labels are `wave_excitation.GROUP.Cp_t` across the members of a group, `.Cp_z` upwards on pontoons and on columns' ends.

@@ -22,9 +22,9 @@ class AnchoredLine(Schema):
 
     def copies(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Anchor and fairlead (m) at each heading."""
-        found = []
+        ends = []
         for heading in self.heading:
             c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
             turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-            found.append((turn @ np.array(self.anchor), turn @ np.array(self.fairlead)))
-        return found
+            ends.append((turn @ np.array(self.anchor), turn @ np.array(self.fairlead)))
+        return ends

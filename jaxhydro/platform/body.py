@@ -17,7 +17,7 @@ Matrix3 = Float[np.ndarray, "3 3"]
 class Inertia(Schema):
     """Inertia about the centre of mass (kg m²).
 
-    Ixy, Ixz and Iyz are entries of the matrix [[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]], so Ixy = -integral of x y
+    Ixy, Ixz and Iyz are entries of the matrix [[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]]. So Ixy = -integral of x y
     dm, as OpenFAST and WAMIT print mass matrices. No sign is changed in reading.
     """
 
@@ -64,19 +64,19 @@ class RigidBody(Schema):
         centre = masses @ centres / masses.sum()
         arms = centres - centre
         steiner = np.einsum("p,pi,pi->", masses, arms, arms) * np.eye(3) - np.einsum("p,pi,pj->ij", masses, arms, arms)
-        own = np.sum([part.inertia.matrix() for part in self.parts], axis=0)
-        return float(masses.sum()), centre, own + steiner
+        inertia = np.sum([part.inertia.matrix() for part in self.parts], axis=0)
+        return float(masses.sum()), centre, inertia + steiner
 
     @model_validator(mode="after")
     def _one_way_and_physical(self) -> Self:
-        given = [key for key in ("mass", "centre_of_mass", "inertia") if getattr(self, key) is not None]
-        if self.parts is not None and given:
-            raise Faults(Problem(given[0], "either parts or mass, centre_of_mass and inertia", "both"))
-        if self.parts is None and not given:
+        stated = [key for key in ("mass", "centre_of_mass", "inertia") if getattr(self, key) is not None]
+        if self.parts is not None and stated:
+            raise Faults(Problem(stated[0], "either parts or mass, centre_of_mass and inertia", "both"))
+        if self.parts is None and not stated:
             raise Faults(Problem("", "mass, centre_of_mass and inertia, or parts", "neither"))
-        if self.parts is None and len(given) < 3:
-            what = {"mass": "a number > 0", "centre_of_mass": "a list of 3 numbers", "inertia": "Ixx, Iyy and Izz"}
-            raise Faults(*(Problem(key, what[key], "nothing") for key in what if key not in given))
+        if self.parts is None and len(stated) < 3:
+            expected = {"mass": "a number > 0", "centre_of_mass": "a list of 3 numbers", "inertia": "Ixx, Iyy and Izz"}
+            raise Faults(*(Problem(key, expected[key], "nothing") for key in expected if key not in stated))
         where = "parts" if self.parts else "inertia"
         with np.errstate(over="ignore", invalid="ignore"):
             inertia = self.combined()[2]
@@ -159,11 +159,11 @@ class Member(Consistent):
         constant = "one" if self.shape == "circ" else "row"
         if kind == constant and (self.shape == "circ" or len(np.atleast_1d(self.d)) == 2):
             return
-        one = "a diameter" if self.shape == "circ" else "[width, height]"
+        size = "a diameter" if self.shape == "circ" else "[width, height]"
         if kind != ("row" if self.shape == "circ" else "pairs"):
-            yield Problem("d", f"{one}, or a list of these with `stations`", shown(self.d))
+            yield Problem("d", f"{size}, or a list of these with `stations`", shown(self.d))
         elif self.stations is None:
-            yield Problem("d", f"{one}, or `stations` with this list", shown(self.d))
+            yield Problem("d", f"{size}, or `stations` with this list", shown(self.d))
         elif np.shape(self.d)[0] != len(self.stations):
             yield Problem("d", f"{len(self.stations)} sizes, one for each station", f"{np.shape(self.d)[0]}")
 
@@ -175,11 +175,11 @@ class Member(Consistent):
         if sizes.ndim == 1 or self.stations is None:
             return np.array([0.0, 1.0]), np.stack([sizes, sizes])
         stations = np.array(self.stations)
-        at = (stations - stations[0]) / (stations[-1] - stations[0])
+        fractions = (stations - stations[0]) / (stations[-1] - stations[0])
         steps = np.flatnonzero(np.diff(stations) == 0)
-        at[steps] -= 0.5 * STEP_LENGTH
-        at[steps + 1] += 0.5 * STEP_LENGTH
-        return at, sizes
+        fractions[steps] -= 0.5 * STEP_LENGTH
+        fractions[steps + 1] += 0.5 * STEP_LENGTH
+        return fractions, sizes
 
 
 Share = Annotated[float, Field(strict=True, ge=0, le=1)]
@@ -235,9 +235,11 @@ COEFFICIENTS = ("Ca_t", "Ca_z", "Cd_t", "Cd_z")
 
 
 class Coefficients(Schema):
-    """Added mass and drag of a group of members: t transverse, z vertical of a pontoon or axial at a column's end.
+    """Added mass and drag of a group of members.
 
-    A coefficient is a number, or the name of another group whose coefficient it is."""
+    t is transverse, z vertical of a pontoon or axial at a column's end. A coefficient is a number, or the name of another
+    group whose coefficient it is.
+    """
 
     Ca_t: Coefficient = 0.0
     Ca_z: Coefficient = 0.0

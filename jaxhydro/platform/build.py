@@ -20,9 +20,9 @@ from jaxhydro.hull.hull import Hull
 from jaxhydro.hull.strips import COLUMN_SLOPE, Elements, Member
 from jaxhydro.jax_settings import need_float64
 from jaxhydro.loads import (
+    AbstractLines,
     AbstractLoad,
     AddedMass,
-    AnyLines,
     Buoyancy,
     EndInertia,
     GuidedMasses,
@@ -101,8 +101,8 @@ def build(platform: schema.Platform) -> Model:
     hull = Hull.of(members, size)
     geometry = buoyancy(() if platform.hydrostatics.linear else members, size)
     platform, coupling, remarks = with_hydrostatics(platform, geometry)
-    declared = _declared_hydrostatics(geometry, platform, mass, float(centre[2]))
-    loads: list[AbstractLoad] = [Weight(mass=body.mass, centre=body.centre), declared, *coupling]
+    buoyancy_load = _with_file_values(geometry, platform, mass, float(centre[2]))
+    loads: list[AbstractLoad] = [Weight(mass=body.mass, centre=body.centre), buoyancy_load, *coupling]
     loads += _mooring(platform)
     for name, matrix, load in (
         ("linear_damping", platform.linear_damping.matrix(), LinearDamping),
@@ -115,7 +115,7 @@ def build(platform: schema.Platform) -> Model:
     loads += _guided(platform) + damper_loads(platform)
     if (rotor := platform.rotor) is not None:
         loads.append(RotorThrust(on_device(rotor.hub), on_device(rotor.thrust), on_device(rotor.damping)))
-    computed, said = tables_of(platform, declared)
+    computed, table_remarks = tables_of(platform, buoyancy_load)
     loads += computed
     if values := _entries("C", platform.stiffness.matrix()):
         loads.append(Stiffness(values))
@@ -131,7 +131,7 @@ def build(platform: schema.Platform) -> Model:
     conventions = Conventions(
         platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal
     )
-    all_remarks = (*_of_mooring(platform), *damper_remarks(platform), *remarks, *said)
+    all_remarks = (*_of_mooring(platform), *damper_remarks(platform), *remarks, *table_remarks)
     flowing: tuple[AbstractWaterEffect, ...] = ()
     if water.current is not None:
         height, velocity = water.current.profile(water.depth)
@@ -185,20 +185,20 @@ def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
 
 def _in_seas(model: Model, platform: schema.Platform) -> tuple[AbstractLoad, ...]:
     """Loads of a model with the sea-state laws of the platform file for their coefficients."""
-    declared, known = platform.sea_state_laws, list(model.values)
-    if declared is None:
+    laws, labels = platform.sea_state_laws, list(model.values)
+    if laws is None:
         return model.loads
-    if unknown := [label for label in declared.exponents if label not in known]:
+    if unknown := [label for label in laws.exponents if label not in labels]:
         where = f"sea_state_laws.exponents.{unknown[0]}"
-        known = [label for label in known if not label.startswith(("mooring.", "stiffness."))]
-        expected, hint = f"a coefficient ({', '.join(known)})", model.shared_hint(unknown[0]) or suggest(unknown[0], known)
+        labels = [label for label in labels if not label.startswith(("mooring.", "stiffness."))]
+        expected, hint = f"a coefficient ({', '.join(labels)})", model.shared_hint(unknown[0]) or suggest(unknown[0], labels)
         raise InputError(platform.name, [Problem(where, expected, repr(unknown[0]), hint)])
     exponents = {
         (label, over): value
-        for label, row in declared.exponents.items()
+        for label, row in laws.exponents.items()
         for over, value in row.model_dump(exclude_none=True).items()
     }
-    return with_exponents(model.loads, exponents, SeaState(**declared.reference.model_dump()))
+    return with_exponents(model.loads, exponents, SeaState(**laws.reference.model_dump()))
 
 
 def _chosen_drag(platform: schema.Platform, model: Model) -> dict[str, DragLaw]:
@@ -291,48 +291,48 @@ def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
     return [MooringLines(anchor, fairlead, stiffness, unstretched)]
 
 
-def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: float, centre: float) -> Buoyancy:
+def _with_file_values(load: Buoyancy, platform: schema.Platform, mass: float, centre: float) -> Buoyancy:
     """Buoyancy with the values of the platform file in place of those of the members' geometry.
 
     Without members, the volume balances the weight and the mooring's pull at the reference position.
     """
-    declared, water = platform.hydrostatics, platform.water
+    hydrostatics, water = platform.hydrostatics, platform.water
     weight_density = water.density * water.gravity
-    own = load.upright(weight_density)
-    volume = declared.displaced_volume
+    geometry = load.upright(weight_density)
+    volume = hydrostatics.displaced_volume
     if volume is None:
         pull = sum(float(m.preload[2]) if isinstance(m, Stiffness) else _line_pull(m) for m in _mooring(platform))
         borne = mass + sum(guided.mass for guided in platform.guided_masses if guided.weight)
         borne += damper_mass(platform)
         volume = (
-            own["displaced_volume"]
-            if platform.members and not declared.linear
+            geometry["displaced_volume"]
+            if platform.members and not hydrostatics.linear
             else borne / water.density - pull / weight_density
         )
-    force = weight_density * (volume - own["displaced_volume"])
+    force = weight_density * (volume - geometry["displaced_volume"])
     weight_share = mass * water.gravity * centre  # of C44 and C55, with the sign of -m g z_G
     stiffness = []
     for name, value, buoyant in (
-        ("C33", declared.C33, declared.C33),
-        ("C44", declared.C44, declared.C44_buoyancy),
-        ("C55", declared.C55, declared.C55_buoyancy),
+        ("C33", hydrostatics.C33, hydrostatics.C33),
+        ("C44", hydrostatics.C44, hydrostatics.C44_buoyancy),
+        ("C55", hydrostatics.C55, hydrostatics.C55_buoyancy),
     ):
         if name != "C33" and value is not None:
             buoyant = value + weight_share
         # volume that the members do not have is at the centre of buoyancy of those that they have
-        extra = 0.0 if name == "C33" else force * own["centre_of_buoyancy"]
-        stiffness.append(extra if buoyant is None else buoyant - own[name])
+        extra = 0.0 if name == "C33" else force * geometry["centre_of_buoyancy"]
+        stiffness.append(extra if buoyant is None else buoyant - geometry[name])
     changed = (on_device(force), on_device(stiffness))
     return eqx.tree_at(lambda b: (b.extra_force, b.extra_stiffness), load, changed)
 
 
 def _line_pull(load: AbstractLoad) -> float:
     """Vertical force (N) of lines at the reference position."""
-    assert isinstance(load, AnyLines)
+    assert isinstance(load, AbstractLines)
     tension, towards = (np.asarray(x) for x in _pull(load))
     return float((tension * towards[2]).sum())
 
 
 @quick_jit
-def _pull(load: AnyLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
+def _pull(load: AbstractLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
     return load.tension(jnp.zeros(6), jnp.eye(3))

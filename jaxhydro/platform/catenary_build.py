@@ -48,8 +48,8 @@ def catenary_lines(mooring: Catenary, water: WaterProperties) -> CatenaryLines:
         jnp.asarray(np.array([fairlead for _, fairlead in ends]).T),
         tuple(types),
         tuple(grounded),
-        {kind: one.axial_stiffness for kind, one in used.items()},
-        {kind: one.weight(water.density, water.gravity) for kind, one in used.items()},
+        {kind: line_type.axial_stiffness for kind, line_type in used.items()},
+        {kind: line_type.weight(water.density, water.gravity) for kind, line_type in used.items()},
         lengths,
         {f"line{i + 1}": 0.0 for i in range(len(types))},
         jnp.asarray(mooring.seabed.friction),
@@ -61,7 +61,11 @@ USUAL_STRAIN = 0.05  # of a line in the reference position: chain and wire break
 
 @quick_jit
 def _at_rest(load: CatenaryLines) -> tuple[Float[Array, " l"], Float[Array, " l"], Float[Array, " l"]]:
-    """Horizontal tension (N), lowest point under the fairlead (m) and strain there, in the reference position."""
+    """Horizontal tension, lowest point and strain of lines in the reference position.
+
+    Returns:
+        Horizontal tension (N), lowest point under the fairlead (m) and strain (-) at the fairlead, (l,) each.
+    """
     tension, direction = load.tension(jnp.zeros(6), jnp.eye(3))
     horizontal, vertical = tension * jnp.hypot(direction[0], direction[1]), -tension * direction[2]
     # what is suspended of a line that may rest on a seabed anywhere ends at its lowest point
@@ -82,7 +86,7 @@ def catenary_remarks(mooring: Catenary, water: WaterProperties, source: str) -> 
         InputError: A line has no balance in the reference position, or one whose anchor is above the seabed sags into it.
     """
     load, depth = catenary_lines(mooring, water), mooring.seabed_depth(water.depth)
-    horizontal, drop, strain = (np.asarray(one) for one in _at_rest(load))
+    horizontal, drop, strain = (np.asarray(values) for values in _at_rest(load))
     fairlead = np.asarray(load.fairlead)[2]
     places = [(i, copy) for i, line in enumerate(mooring.lines) for copy in range(len(line.heading))]
     problems = {}
@@ -98,21 +102,21 @@ def catenary_remarks(mooring: Catenary, water: WaterProperties, source: str) -> 
             problems[i] = Problem(f"mooring.lines[{i}].anchor", f"an anchor at z = {-depth:g} m", f"a sag to {low:.4g} m", hint)
     if problems:
         raise InputError(source, list(problems.values()))
-    found = []
-    if taut := [i for i, one in enumerate(strain) if one > USUAL_STRAIN]:
+    remarks = []
+    if taut := [i for i, value in enumerate(strain) if value > USUAL_STRAIN]:
         worst = max(taut, key=lambda i: strain[i])
-        which = f"line {', '.join(str(i + 1) for i in taut)}"
-        found.append(
-            f"mooring.lines: {which} is stretched by up to {strain[worst]:.0%} at the reference position, "
+        subject = f"line {', '.join(str(i + 1) for i in taut)}"
+        remarks.append(
+            f"mooring.lines: {subject} is stretched by up to {strain[worst]:.0%} at the reference position, "
             f"with {float(horizontal[worst]) / 1e3:.4g} kN of horizontal tension in line {worst + 1}. Chain and wire break at "
             "1 to 2 %, polyester near 12 %. Check lengths, anchors and axial stiffness"
         )
     taut_lines = [mooring.lines[i].distance() > mooring.lines[i].length() for i, _ in places]  # vertical tendons, too
     hanging = [on_bed and pull == 0.0 and not taut for on_bed, pull, taut in zip(load.grounded, horizontal, taut_lines)]
     if slack := [i + 1 for i, hangs in enumerate(hanging) if hangs]:
-        which = "every line hangs" if len(slack) == len(places) else f"line {', '.join(map(str, slack))}: hangs"
-        found.append(
-            f"mooring.lines: {which} straight down at the reference position and has no horizontal tension. "
+        subject = "every line hangs" if len(slack) == len(places) else f"line {', '.join(map(str, slack))}: hangs"
+        remarks.append(
+            f"mooring.lines: {subject} straight down at the reference position and has no horizontal tension. "
             "The line is longer than the way down to the sea bed and along it to its anchor."
         )
-    return found
+    return remarks

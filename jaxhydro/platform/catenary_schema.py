@@ -27,15 +27,15 @@ class LineType(Consistent):
 
     def _faults(self) -> Iterator[Problem]:
         pair = {key: getattr(self, key) for key in ("mass_per_length", "diameter")}
-        given = [key for key, value in pair.items() if value is not None]
+        stated = [key for key, value in pair.items() if value is not None]
         either = "either submerged_weight, or mass_per_length and diameter"
-        if self.submerged_weight is not None and given:
-            yield Problem("", either, ", ".join(["submerged_weight", *given]))
-        elif self.submerged_weight is None and not given:
+        if self.submerged_weight is not None and stated:
+            yield Problem("", either, ", ".join(["submerged_weight", *stated]))
+        elif self.submerged_weight is None and not stated:
             yield Problem("", either, "neither")
-        elif len(given) == 1:
-            (lacking,) = set(pair) - set(given)
-            yield Problem(lacking, f"a number, since {given[0]} is given", "nothing")
+        elif len(stated) == 1:
+            (lacking,) = set(pair) - set(stated)
+            yield Problem(lacking, f"a number, since {stated[0]} is given", "nothing")
 
     def weight(self, density: float, gravity: float) -> float:
         """Weight in water (N/m) of a density (kg/m³), by gravity (m/s²)."""
@@ -53,7 +53,10 @@ class Segment(Schema):
 
 
 class CatenaryLine(AnchoredLine):
-    """Line from anchor to fairlead (m), its segments in this order, copied to each `heading` (deg) about the z axis."""
+    """Line from anchor to fairlead (m), copied to each `heading` (deg) about the z axis.
+
+    Its segments are in this order.
+    """
 
     segments: Annotated[tuple[Segment, ...], Field(min_length=1)]
 
@@ -63,7 +66,10 @@ class CatenaryLine(AnchoredLine):
 
 
 class Seabed(Schema):
-    """Friction coefficient (-) between lines and the seabed, and its depth (m) where that is not the water's."""
+    """Friction coefficient (-) between lines and the seabed, and the seabed's depth (m).
+
+    Without a depth it is the water's.
+    """
 
     friction: NonNegative = 0.0
     depth: Positive | None = None
@@ -78,12 +84,12 @@ class Catenary(Consistent):
     seabed: Seabed = Seabed()
 
     def _faults(self) -> Iterator[Problem]:
-        known, used = ", ".join(self.line_types), {segment.type for line in self.lines for segment in line.segments}
+        names, used = ", ".join(self.line_types), {segment.type for line in self.lines for segment in line.segments}
         for i, line in enumerate(self.lines):
             for k, segment in enumerate(line.segments):
                 if segment.type not in self.line_types:
                     where, hint = f"lines[{i}].segments[{k}].type", suggest(segment.type, self.line_types)
-                    yield Problem(where, f"a type of `line_types` ({known})", shown(segment.type), hint)
+                    yield Problem(where, f"a type of `line_types` ({names})", shown(segment.type), hint)
             if line.distance() > (1 + MAX_STRAIN) * line.length():
                 expected = (
                     f"at least {line.distance() / (1 + MAX_STRAIN):.6g} m, as the fairlead is {line.distance():.6g} m from "
@@ -103,7 +109,7 @@ class Catenary(Consistent):
         return line.anchor[2] <= -self.seabed_depth(water_depth) * (1 - ON_SEABED)
 
     def water_faults(self, density: float, water_depth: float, gravity: float) -> Iterator[Problem]:
-        """What does not fit the water: points under the seabed, and types that float."""
+        """Mistakes with respect to the water: points under the seabed, and types that float."""
         depth = self.seabed_depth(water_depth)
         for i, line in enumerate(self.lines):
             for end in ("anchor", "fairlead"):

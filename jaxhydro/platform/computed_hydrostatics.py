@@ -29,64 +29,68 @@ class FileStatics(NamedTuple):
     The stiffness is None without a file.
     """
 
-    declared: schema.Hydrostatics
+    hydrostatics: schema.Hydrostatics
     stiffness: np.ndarray | None
     remarks: tuple[Remark, ...]
 
 
-def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> FileStatics:
+def hydrostatics_of(hydrostatics: schema.Hydrostatics, water: schema.Water) -> FileStatics:
     """Hydrostatics completed by the values of their file.
 
     Raises:
         InputError: The file is wrong.
     """
-    if not declared.file:
-        return FileStatics(declared, None, ())
+    if not hydrostatics.file:
+        return FileStatics(hydrostatics, None, ())
     notes: list[str] = []
-    if declared.kind == "wamit":
-        assert not isinstance(declared.body, str)
-        found = read_hydrostatics(
-            declared.file, water.density, water.gravity, length=declared.length or 1.0, body=declared.body
+    if hydrostatics.kind == "wamit":
+        assert not isinstance(hydrostatics.body, str)
+        contents = read_hydrostatics(
+            hydrostatics.file, water.density, water.gravity, length=hydrostatics.length or 1.0, body=hydrostatics.body
         )
-    elif declared.kind == "nemoh":
-        found = read_nemoh_hydrostatics(declared.file, density=water.density, gravity=water.gravity, notes=notes)
+    elif hydrostatics.kind == "nemoh":
+        contents = read_nemoh_hydrostatics(hydrostatics.file, density=water.density, gravity=water.gravity, notes=notes)
     else:
-        assert not isinstance(declared.body, int)
-        found = read_capytaine_hydrostatics(
-            declared.file, body=declared.body, density=water.density, gravity=water.gravity, notes=notes
+        assert not isinstance(hydrostatics.body, int)
+        contents = read_capytaine_hydrostatics(
+            hydrostatics.file, body=hydrostatics.body, density=water.density, gravity=water.gravity, notes=notes
         )
-    values, said = _values(declared, found, water)
+    values, messages = _values(hydrostatics, contents, water)
     if values.get("C33", 0.0) < 0:
-        raise InputError(declared.file, [Problem("C33", "a stiffness >= 0", f"{values['C33']:.4g} N/m")])
-    given = {key: value for key, value in values.items() if getattr(declared, key) is None}
-    off = np.abs(found.stiffness[[3, 4], 5]).max()
-    if off > MIN_NOTED_STIFFNESS * np.abs(np.diag(found.stiffness)).max():
-        notes.append(f"{declared.file}: C46 and C56 are left out: they follow from mass and buoyancy off the centreline")
-    told = tuple(map(Remark, [*notes, *said]))
-    return FileStatics(declared.model_copy(update=given), found.stiffness, told)
+        raise InputError(hydrostatics.file, [Problem("C33", "a stiffness >= 0", f"{values['C33']:.4g} N/m")])
+    filled = {key: value for key, value in values.items() if getattr(hydrostatics, key) is None}
+    off = np.abs(contents.stiffness[[3, 4], 5]).max()
+    if off > MIN_NOTED_STIFFNESS * np.abs(np.diag(contents.stiffness)).max():
+        notes.append(f"{hydrostatics.file}: C46 and C56 are left out: they follow from mass and buoyancy off the centreline")
+    told = tuple(map(Remark, [*notes, *messages]))
+    return FileStatics(hydrostatics.model_copy(update=filled), contents.stiffness, told)
 
 
-def _values(declared: schema.Hydrostatics, found: FileHydrostatics, water: schema.Water) -> tuple[dict[str, float], list[str]]:
+def _values(
+    hydrostatics: schema.Hydrostatics, contents: FileHydrostatics, water: schema.Water
+) -> tuple[dict[str, float], list[str]]:
     """Keys of `hydrostatics` and their values by a file, and notes."""
-    values: dict[str, float] = {"C33": float(found.stiffness[2, 2])}
-    if found.volume is not None:
-        values["displaced_volume"] = found.volume
-    own = {key: float(found.stiffness[i, i]) for key, i in (("C44", 3), ("C55", 4))}
-    wanted = [key for key in own if getattr(declared, key) is None and getattr(declared, f"{key}_buoyancy") is None]
+    values: dict[str, float] = {"C33": float(contents.stiffness[2, 2])}
+    if contents.volume is not None:
+        values["displaced_volume"] = contents.volume
+    stiffness = {key: float(contents.stiffness[i, i]) for key, i in (("C44", 3), ("C55", 4))}
+    wanted = [
+        key for key in stiffness if getattr(hydrostatics, key) is None and getattr(hydrostatics, f"{key}_buoyancy") is None
+    ]
     if not wanted:
         return values, []
     many = " and ".join(wanted)
-    if found.centre_of_mass is not None and found.volume is not None:
+    if contents.centre_of_mass is not None and contents.volume is not None:
         # the file's own weight, that of the displaced water, is taken out, and the platform's takes its place
-        weight = water.density * water.gravity * found.volume * found.centre_of_mass
-        return values | {f"{key}_buoyancy": own[key] + weight for key in wanted}, []
-    if declared.weight == "excluded":
-        return values | {f"{key}_buoyancy": own[key] for key in wanted}, []
-    said = (
-        f"{declared.file}: {many} are taken to include the weight, as WAMIT and Capytaine define them; in files made for "
+        weight = water.density * water.gravity * contents.volume * contents.centre_of_mass
+        return values | {f"{key}_buoyancy": stiffness[key] + weight for key in wanted}, []
+    if hydrostatics.weight == "excluded":
+        return values | {f"{key}_buoyancy": stiffness[key] for key in wanted}, []
+    message = (
+        f"{hydrostatics.file}: {many} are taken to include the weight, as WAMIT and Capytaine define them; in files made for "
         "OpenFAST they may not: `weight: excluded`"
     )
-    return values | {key: own[key] for key in wanted}, [] if declared.weight else [said]
+    return values | {key: stiffness[key] for key in wanted}, [] if hydrostatics.weight else [message]
 
 
 def with_hydrostatics(
@@ -101,11 +105,11 @@ def with_hydrostatics(
     statics = hydrostatics_of(platform.hydrostatics, water)
     if statics.stiffness is None:
         return platform, (), ()
-    own = hydrostatic_stiffness(members, water.density * water.gravity)
+    of_members = hydrostatic_stiffness(members, water.density * water.gravity)
     mass, centre, _ = platform.rigid_body.combined()
-    doubts = weight_doubt(platform.hydrostatics, statics.stiffness, own, mass * water.gravity * float(centre[2]))
-    filled = platform.model_copy(update={"hydrostatics": statics.declared})
-    return filled, coupling_of(statics.stiffness, own), (*as_warnings(doubts), *statics.remarks)
+    doubts = weight_doubt(platform.hydrostatics, statics.stiffness, of_members, mass * water.gravity * float(centre[2]))
+    filled = platform.model_copy(update={"hydrostatics": statics.hydrostatics})
+    return filled, coupling_of(statics.stiffness, of_members), (*as_warnings(doubts), *statics.remarks)
 
 
 def hydrostatic_stiffness(load: Buoyancy, weight_density: float) -> np.ndarray:
@@ -118,34 +122,34 @@ def _slope(load: Buoyancy, weight_density: Float[Array, ""]) -> Float[Array, "6 
     return jax.jacfwd(lambda q: load.force(q, rotation(q[3:]), weight_density))(jnp.zeros(6))
 
 
-def weight_doubt(declared: schema.Hydrostatics, stiffness: np.ndarray, own: np.ndarray, weight: float) -> list[str]:
+def weight_doubt(hydrostatics: schema.Hydrostatics, stiffness: np.ndarray, of_members: np.ndarray, weight: float) -> list[str]:
     """Warning where a .hst file seems to include the weight, or not, against the declaration.
 
     Args:
-        declared: As in the platform file.
+        hydrostatics: As in the platform file.
         stiffness: Of the file, N m/rad.
-        own: Of the members, without the weight.
+        of_members: Of the members, without the weight.
         weight: m g z of the centre of mass, N m.
     """
-    if Path(declared.file).suffix.lower() == ".out" or declared.kind != "wamit" or not own[3, 3]:
+    if Path(hydrostatics.file).suffix.lower() == ".out" or hydrostatics.kind != "wamit" or not of_members[3, 3]:
         return []
-    missed = {"included": abs(stiffness[3, 3] + weight - own[3, 3]), "excluded": abs(stiffness[3, 3] - own[3, 3])}
-    taken = declared.weight or "included"
-    other = "excluded" if taken == "included" else "included"
-    if missed[taken] < CLEAR_RATIO * missed[other] or missed[taken] < 0.05 * abs(own[3, 3]):
+    missed = {"included": abs(stiffness[3, 3] + weight - of_members[3, 3]), "excluded": abs(stiffness[3, 3] - of_members[3, 3])}
+    taken = hydrostatics.weight or "included"
+    opposite = "excluded" if taken == "included" else "included"
+    if missed[taken] < CLEAR_RATIO * missed[opposite] or missed[taken] < 0.05 * abs(of_members[3, 3]):
         return []
     return [
-        f"{declared.file}: C44 {stiffness[3, 3]:.4g} N m/rad fits the members with the weight {other}, not {taken}: see "
+        f"{hydrostatics.file}: C44 {stiffness[3, 3]:.4g} N m/rad fits the members with the weight {opposite}, not {taken}: see "
         "`hydrostatics.weight`"
     ]
 
 
-def coupling_of(stiffness: np.ndarray, own: np.ndarray) -> tuple[HydrostaticCoupling, ...]:
-    """Load of a file's stiffness couplings beyond those of the members (`own`), if any."""
+def coupling_of(stiffness: np.ndarray, of_members: np.ndarray) -> tuple[HydrostaticCoupling, ...]:
+    """Load of a file's stiffness couplings beyond those of the members (`of_members`), if any."""
     matrix = np.zeros((6, 6))
     for name in COUPLED:
         i, j = int(name[1]) - 1, int(name[2]) - 1
-        matrix[i, j] = matrix[j, i] = stiffness[i, j] - own[i, j]
+        matrix[i, j] = matrix[j, i] = stiffness[i, j] - of_members[i, j]
     size = np.sqrt(np.abs(np.diag(stiffness)))
     matrix[np.abs(matrix) <= 1e-9 * np.outer(size, size)] = 0.0
     return (HydrostaticCoupling(stiffness=jnp.asarray(matrix)),) if matrix.any() else ()

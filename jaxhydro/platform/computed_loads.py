@@ -45,75 +45,77 @@ class RealisedRadiation(NamedTuple):
     remarks: tuple[Remark, ...]
 
 
-def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRadiation, RealisedRadiation]:
-    """Radiation load that a platform file declares, and what it was made from.
+def radiation_of(radiation: schema.Radiation, density: float) -> tuple[ComputedRadiation, RealisedRadiation]:
+    """Radiation load of a platform file, with its coefficients and state space.
 
     Raises:
         InputError: The file is wrong, or no state space of the declared order comes near its coefficients.
     """
-    file = Path(declared.file)
+    file = Path(radiation.file)
     stamp = file.stat().st_mtime_ns if file.is_file() else 0
-    found = _realised(declared, stamp, density)
-    share, highest = float(declared.use == "load"), float(found.coefficients.omega[-1])
-    space = found.space
+    realised = _realised(radiation, stamp, density)
+    share, highest = float(radiation.use == "load"), float(realised.coefficients.omega[-1])
+    space = realised.space
     rates, drive, output = map(jnp.asarray, (space.rates, space.drive, space.output))
-    return ComputedRadiation(rates, drive, output, jnp.asarray(share), highest), found
+    return ComputedRadiation(rates, drive, output, jnp.asarray(share), highest), realised
 
 
-def added_mass_of(declared: schema.Radiation, found: RadiationCoefficients) -> ComputedAddedMass | None:
-    """Added mass of a file at infinite frequency, where the platform file takes it or `diagnose` may; else None.
+def added_mass_of(radiation: schema.Radiation, coefficients: RadiationCoefficients) -> ComputedAddedMass | None:
+    """Added mass of a file at infinite frequency, or None where nothing takes it.
+
+    The platform file takes it, or `diagnose` may.
 
     Raises:
         InputError: It is to be taken, and the file lacks it.
     """
-    taken = declared.use == "load" and declared.added_mass == "file"
-    if found.infinite is None and declared.added_mass == "file":
+    taken = radiation.use == "load" and radiation.added_mass == "file"
+    if coefficients.infinite is None and radiation.added_mass == "file":
         expected = "a file with added mass at infinite frequency (in WAMIT's .1 the rows with PER = 0)"
-        raise InputError(declared.file, [Problem("radiation.added_mass", expected, "none in it")])
-    if found.infinite is None or not (taken or declared.use == "candidate"):
+        raise InputError(radiation.file, [Problem("radiation.added_mass", expected, "none in it")])
+    if coefficients.infinite is None or not (taken or radiation.use == "candidate"):
         return None
-    symmetric = 0.5 * (found.infinite + found.infinite.T)
+    symmetric = 0.5 * (coefficients.infinite + coefficients.infinite.T)
     return ComputedAddedMass(jnp.asarray(symmetric), jnp.asarray(float(taken)))
 
 
 @lru_cache(maxsize=8)
-def _realised(declared: schema.Radiation, stamp: int, density: float) -> RealisedRadiation:
-    source, notes = declared.file, list[str]()
-    if declared.kind == "wamit":
-        assert not isinstance(declared.body, str)
-        found = read_wamit(source, density, declared.length or 1.0, declared.by, declared.body)
-    elif declared.kind == "nemoh":
-        assert not isinstance(declared.body, str)
-        found = read_nemoh_radiation(source, body=declared.body, density=density, notes=notes)
+def _realised(radiation: schema.Radiation, stamp: int, density: float) -> RealisedRadiation:
+    source, notes = radiation.file, list[str]()
+    if radiation.kind == "wamit":
+        assert not isinstance(radiation.body, str)
+        coefficients = read_wamit(source, density, radiation.length or 1.0, radiation.by, radiation.body)
+    elif radiation.kind == "nemoh":
+        assert not isinstance(radiation.body, str)
+        coefficients = read_nemoh_radiation(source, body=radiation.body, density=density, notes=notes)
     else:
-        assert not isinstance(declared.body, int)
-        found = read_capytaine(source, body=declared.body, density=density, notes=notes)
+        assert not isinstance(radiation.body, int)
+        coefficients = read_capytaine(source, body=radiation.body, density=density, notes=notes)
     try:
-        space = realise(found, declared.tolerance, declared.order)
+        space = realise(coefficients, radiation.tolerance, radiation.order)
     except ValueError as error:
         expected = "radiation damping that takes energy, and that a state space can follow"
-        raise InputError(source, [Problem("", expected, str(error), _column(declared))]) from None
-    doubts = radiation_column(found, space, declared.by if declared.kind == "wamit" else None, source)
+        raise InputError(source, [Problem("", expected, str(error), _column(radiation))]) from None
+    doubts = radiation_column(coefficients, space, radiation.by if radiation.kind == "wamit" else None, source)
     if space.misfit > MAX_MISFIT:
         wrong = f"a misfit of {100 * space.misfit:.0f} % with {space.order}"
-        hint = doubts[0].removeprefix(f"{source}: ") if doubts else _column(declared)
+        hint = doubts[0].removeprefix(f"{source}: ") if doubts else _column(radiation)
         raise InputError(source, [Problem("radiation.order", "enough states to follow the coefficients", wrong, hint)])
-    doubts += asymmetry(found, source)
-    return RealisedRadiation(found, space, (*as_warnings(doubts), *map(Remark, notes)))
+    doubts += asymmetry(coefficients, source)
+    return RealisedRadiation(coefficients, space, (*as_warnings(doubts), *map(Remark, notes)))
 
 
-def _column(declared: schema.Radiation) -> str:
-    """A hint for a file that makes no sense: what its first column was taken to be."""
-    return f"Its first column is read by {declared.by}: see `by`." if declared.kind == "wamit" else ""
+def _column(radiation: schema.Radiation) -> str:
+    """Hint for a file that makes no sense: the quantity of its first column, as stated."""
+    return f"Its first column is read by {radiation.by}: see `by`." if radiation.kind == "wamit" else ""
 
 
 def excitation_of(
-    declared: schema.Excitation, water: schema.Water, corner: float = CORNER
+    excitation: schema.Excitation, water: schema.Water, corner: float = CORNER
 ) -> tuple[ComputedExcitation, tuple[Remark, ...]]:
-    """Excitation load that a platform file declares, and remarks.
+    """Excitation load of a platform file, and remarks.
 
     Args:
-        declared: The key `excitation`.
+        excitation: The key `excitation`.
         water: The key `water`.
         corner: Corner frequency (rad/s) of the load's filter.
 
@@ -121,49 +123,49 @@ def excitation_of(
         InputError: The file is wrong.
     """
     notes, doubts = list[str](), list[str]()
-    if declared.kind == "wamit":
-        assert not isinstance(declared.body, str)
-        wamit: Any = {"length": declared.length or 1.0, "by": declared.by, "body": declared.body, "warnings": doubts}
-        fluid = (declared.file, water.density, water.gravity)
-        if declared.heading is None:
+    if excitation.kind == "wamit":
+        assert not isinstance(excitation.body, str)
+        wamit: Any = {"length": excitation.length or 1.0, "by": excitation.by, "body": excitation.body, "warnings": doubts}
+        fluid = (excitation.file, water.density, water.gravity)
+        if excitation.heading is None:
             table: AnyExcitation = _simplest(read_directional_excitation(*fluid, **wamit))
         else:
-            table = read_excitation(*fluid, heading=declared.heading, **wamit)
-        if declared.body is not None:
-            notes.append(f"{declared.file}: phases of body {declared.body} are those of waves at the file's own origin")
-    elif declared.kind == "nemoh":
-        assert not isinstance(declared.body, str)
-        own: Any = {"body": declared.body, "density": water.density, "gravity": water.gravity, "depth": water.depth}
-        if declared.heading is None:
-            table = _simplest(read_nemoh_directions(declared.file, notes=notes, **own))
+            table = read_excitation(*fluid, heading=excitation.heading, **wamit)
+        if excitation.body is not None:
+            notes.append(f"{excitation.file}: phases of body {excitation.body} are those of waves at the file's own origin")
+    elif excitation.kind == "nemoh":
+        assert not isinstance(excitation.body, str)
+        options: Any = {"body": excitation.body, "density": water.density, "gravity": water.gravity, "depth": water.depth}
+        if excitation.heading is None:
+            table = _simplest(read_nemoh_directions(excitation.file, notes=notes, **options))
         else:
-            table = read_nemoh_excitation(declared.file, heading=declared.heading, notes=notes, **own)
+            table = read_nemoh_excitation(excitation.file, heading=excitation.heading, notes=notes, **options)
     else:
-        assert not isinstance(declared.body, int)
-        own = {"body": declared.body, "density": water.density, "gravity": water.gravity, "depth": water.depth}
-        if declared.heading is None:
-            table = _simplest(read_capytaine_directions(declared.file, notes=notes, **own))
+        assert not isinstance(excitation.body, int)
+        options = {"body": excitation.body, "density": water.density, "gravity": water.gravity, "depth": water.depth}
+        if excitation.heading is None:
+            table = _simplest(read_capytaine_directions(excitation.file, notes=notes, **options))
         else:
-            table = read_capytaine_excitation(declared.file, heading=declared.heading, notes=notes, **own)
-    load = ComputedExcitation(table, share=jnp.asarray(float(declared.use == "load")), corner=float(corner))
+            table = read_capytaine_excitation(excitation.file, heading=excitation.heading, notes=notes, **options)
+    load = ComputedExcitation(table, share=jnp.asarray(float(excitation.use == "load")), corner=float(corner))
     return load, (*as_warnings(doubts), *map(Remark, notes))
 
 
-def drift_of(declared: schema.Drift, water: schema.Water) -> tuple[DriftTransfer, tuple[Remark, ...]]:
-    """Drift load that a platform file declares, and remarks.
+def drift_of(drift: schema.Drift, water: schema.Water) -> tuple[DriftTransfer, tuple[Remark, ...]]:
+    """Drift load of a platform file, and remarks.
 
     Raises:
         InputError: The file is wrong.
     """
     doubts: list[str] = []
-    how: Any = {"length": declared.length, "newman": declared.approximation == "newman", "by": declared.by}
-    how |= {"body": declared.body, "warnings": doubts}
-    fluid = (declared.file, water.density, water.gravity)
-    if declared.heading is None:
+    how: Any = {"length": drift.length, "newman": drift.approximation == "newman", "by": drift.by}
+    how |= {"body": drift.body, "warnings": doubts}
+    fluid = (drift.file, water.density, water.gravity)
+    if drift.heading is None:
         transfer: AnyTransfer = _simplest(read_directional_transfer(*fluid, **how))
     else:
-        transfer = read_transfer(*fluid, heading=declared.heading, **how)
-    return DriftTransfer(transfer, share=jnp.asarray(float(declared.use == "load"))), as_warnings(doubts)
+        transfer = read_transfer(*fluid, heading=drift.heading, **how)
+    return DriftTransfer(transfer, share=jnp.asarray(float(drift.use == "load"))), as_warnings(doubts)
 
 
 def _simplest(table: Any) -> Any:
@@ -200,9 +202,9 @@ def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[Abstr
             columns.append(Column(radiates.file, realised.coefficients.omega, radiates.by))
     if (excites := platform.excitation) is not None:
         mass = platform.rigid_body.combined()[0]
-        excitation, said = excitation_of(excites, water, CORNER / pace_of(size_of(mass, water.density), water.gravity))
+        excitation, notes = excitation_of(excites, water, CORNER / pace_of(size_of(mass, water.density), water.gravity))
         loads.append(excitation)
-        remarks += said
+        remarks += notes
         if excites.kind == "wamit":
             of_one = _one_heading(excitation.excitation)
             omega, force = np.asarray(of_one.omega), np.asarray(of_one.force)
@@ -211,10 +213,10 @@ def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[Abstr
             remarks += as_warnings(excitation_column(omega, force, excites.by, excites.file, hull))
             columns.append(Column(excites.file, omega, excites.by))
     if (drifts := platform.drift) is not None:
-        drift, said = drift_of(drifts, water)
+        drift, notes = drift_of(drifts, water)
         loads.append(drift)
         table = _one_heading(drift.transfer)
         of_regular_waves = np.einsum("im,imk->ik", np.asarray(table.eigenvalue), np.abs(np.asarray(table.filters)) ** 2)
-        remarks += [*said, *as_warnings(drift_column(np.hypot(*of_regular_waves[:2]), drifts.by, drifts.file))]
+        remarks += [*notes, *as_warnings(drift_column(np.hypot(*of_regular_waves[:2]), drifts.by, drifts.file))]
         columns.append(Column(drifts.file, np.asarray(table.omega), drifts.by))
     return loads, [*remarks, *as_warnings(same_columns(columns))]

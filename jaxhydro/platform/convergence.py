@@ -110,14 +110,14 @@ def convergence(
         if dof not in DOFS:
             raise unknown("degree of freedom", dof, DOFS)
     platform = platform if isinstance(platform, Platform) else load_platform(platform)
-    kept = np.asarray(times) >= float(times[0]) + transient
-    time, motions, periods = np.asarray(times)[kept], [], []
+    after_transient = np.asarray(times) >= float(times[0]) + transient
+    time, motions, periods = np.asarray(times)[after_transient], [], []
     for number in elements:
         model = build(with_elements(platform, group, int(number), points))
         modes = natural_modes(model)
         periods.append([modes.of(dof) for dof in dofs])
         motion = simulate(model, times, sea, position=position, rate=rate, step=step, method=method)
-        motions.append(np.asarray(motion.position)[kept])
+        motions.append(np.asarray(motion.position)[after_transient])
     integral: dict[str, dict[str, np.ndarray]] = {}
     difference = {}
     finest = motions[int(np.argmax(elements))]

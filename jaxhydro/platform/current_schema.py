@@ -21,10 +21,10 @@ class CurrentLevel(Schema):
 
 
 class SteadyCurrent(Consistent):
-    """Steady current: `speed` (m/s) at still water, towards `heading` (deg), with a power law over depth; or `levels`.
+    """Steady current with a power law over depth, or by `levels`.
 
-    U(z) = speed ((depth + z) / depth)^exponent, DNV-RP-C205, section 4.1.4.2; exponent 0: the same at all depths, 1/7: a
-    tidal current.
+    U(z) = speed ((depth + z) / depth)^exponent, DNV-RP-C205, section 4.1.4.2. `speed` (m/s) is that at still water, towards
+    `heading` (deg). An exponent of 0 means the same speed at all depths, 1/7 a tidal current.
     """
 
     speed: NonNegative | None = None
@@ -44,7 +44,14 @@ class SteadyCurrent(Consistent):
                 yield Problem(f"levels[{i}].z", f"levels from the surface down: z below {above:g} m", f"{below:g} m")
 
     def profile(self, depth: float) -> tuple[np.ndarray, np.ndarray]:
-        """Heights (m), increasing, (k,), and velocity along x and y there (m/s), (2, k), in water of a depth (m)."""
+        """Heights of a current profile, and the velocity at each.
+
+        Args:
+            depth: Water depth (m).
+
+        Returns:
+            Heights (m), increasing, (k,), and velocity along x and y (m/s), (2, k).
+        """
         if self.levels:
             rows = [(level.z, level.speed, level.heading) for level in self.levels[::-1]]
         elif self.exponent:

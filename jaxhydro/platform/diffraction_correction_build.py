@@ -1,4 +1,7 @@
-"""Correction of the strips' first-order wave force by a table: the strips' own force at rest is computed and subtracted."""
+"""Correction of the strips' first-order wave force by a table.
+
+The strips' own force at rest is computed and subtracted.
+"""
 
 import dataclasses
 from collections.abc import Mapping
@@ -55,8 +58,8 @@ def _of_one_heading(
     model: Model, table: Excitation, heading: float, omega: Float[np.ndarray, " n"], keys: tuple[Key, ...]
 ) -> Excitation:
     base, each = strip_forces(model, omega, heading, keys)
-    own = np.asarray(table.at(on_device(omega))) - base
-    return Excitation.of(omega, np.concatenate([own, *each]))
+    correction = np.asarray(table.at(on_device(omega))) - base
+    return Excitation.of(omega, np.concatenate([correction, *each]))
 
 
 def strip_forces(
@@ -74,8 +77,8 @@ def strip_forces(
         Force where all are 0 (N/m, N, earth axes), (6, n), and what each coefficient adds per unit, (c, 6, n).
     """
     at_rest = model.with_conventions(wetting="mean", waves_at="mean")
-    own = tuple(load for load in model.loads if isinstance(load, StripInertia | EndInertia))
-    at_rest = dataclasses.replace(at_rest, loads=(*own, CoveredEnds()), water=(), sensors=())
+    loads = tuple(load for load in model.loads if isinstance(load, StripInertia | EndInertia))
+    at_rest = dataclasses.replace(at_rest, loads=(*loads, CoveredEnds()), water=(), sensors=())
     ones = on_device(np.ones(len(omega)))
     waves = components(ones, on_device(omega), model.environment, heading=heading * ones, phase=0.0)
     parts = [np.asarray(part) for part in _forces(at_rest, PlaneWaves.free(waves, model.environment), keys)]
@@ -85,7 +88,11 @@ def strip_forces(
 
 @quick_jit
 def _forces(model: Model, waves: PlaneWaves, keys: tuple[Key, ...]) -> tuple[Array, ...]:
-    """Real and imaginary part of the force where all coefficients are 0, (n, 6), and of what each adds, (n, c, 6)."""
+    """Force where all coefficients are 0, and the force that each coefficient adds.
+
+    Returns:
+        Real and imaginary part of the first, (n, 6), then of the second, (n, c, 6).
+    """
 
     def force(coefficients: Float[Array, " c"], wave: PlaneWaves) -> Float[Array, "6"]:
         values: dict[str, dict[tuple[str, str], Any]] = {part: {} for part in ForcesAtRest._fields}
@@ -98,12 +105,14 @@ def _forces(model: Model, waves: PlaneWaves, keys: tuple[Key, ...]) -> tuple[Arr
     def turned(wave: PlaneWaves, turn: complex) -> PlaneWaves:
         return PlaneWaves(wave.omega, wave.vector, wave.elevation * turn, wave.potential * turn)
 
-    def at(omega, vector, elevation, potential):
+    def forces_of(omega, vector, elevation, potential):
         wave, none = PlaneWaves(omega, vector, elevation, potential), jnp.zeros(len(keys))
-        real, imaginary = ((force(none, one), jax.jacfwd(force)(none, one).T) for one in (wave, turned(wave, -1j)))
+        real, imaginary = (
+            (force(none, component), jax.jacfwd(force)(none, component).T) for component in (wave, turned(wave, -1j))
+        )
         return real[0], imaginary[0], real[1], imaginary[1]
 
-    return jax.vmap(at, (0, 1, 0, 0))(waves.omega, waves.vector, waves.elevation, waves.potential)
+    return jax.vmap(forces_of, (0, 1, 0, 0))(waves.omega, waves.vector, waves.elevation, waves.potential)
 
 
 def _with_coefficients(load: Any, values: Mapping[str, Mapping[tuple[str, str], Any]]) -> Any:

@@ -44,12 +44,12 @@ def drag_of(load: AbstractLoad) -> MorisonDrag | None:
 
 def drag_laws_of(model: Model) -> dict[str, DragLaw]:
     """Drag laws of a model by coefficient label, plain drag left out; values are not checked."""
-    found: dict[str, DragLaw] = {}
+    by_label: dict[str, DragLaw] = {}
     for load in model.loads:
         if (drag := drag_of(load)) is not None:
             laws = {label: _declared(drag.law, key, model.hull) for label, key in _coefficients(drag).items()}
-            found |= {label: law for label, law in laws.items() if law is not None}
-    return found
+            by_label |= {label: law for label, law in laws.items() if law is not None}
+    return by_label
 
 
 def _declared(law: AbstractDragLaw, key: Key, hull: Hull) -> DragLaw | None:
@@ -76,7 +76,14 @@ def _declared(law: AbstractDragLaw, key: Key, hull: Hull) -> DragLaw | None:
 
 
 def drag_law_labels(model: Model, name: str) -> dict[str, str]:
-    """Labels that a parameter of a drag law, such as exponent, has or would have, by label of the drag coefficient."""
+    """Labels of a parameter of a drag law, by label of the drag coefficient.
+
+    A coefficient without such a law has the label that the parameter would have.
+
+    Args:
+        model: The model.
+        name: Name of the parameter, such as exponent.
+    """
     drags = [drag for load in model.loads if (drag := drag_of(load)) is not None]
     keys = {label: key for drag in drags for label, key in _coefficients(drag).items()}
     return {label: LAW_LABEL.format(key=key, name=name) for label, key in keys.items()}
@@ -87,10 +94,10 @@ def law_labels(model: Model) -> dict[str, str]:
 
     Laws are powers of the sea state for every parameter, and drag laws for every drag coefficient.
     """
-    found = {exponent_label(label, over): label for label in model.values for over in EXPONENT_BASES}
+    labels = {exponent_label(label, over): label for label in model.values for over in EXPONENT_BASES}
     for name in _LAW_PARAMETERS:
-        found |= {label: coefficient for coefficient, label in drag_law_labels(model, name).items()}
-    return found
+        labels |= {label: coefficient for coefficient, label in drag_law_labels(model, name).items()}
+    return labels
 
 
 def plain_drag(model: Model) -> list[str]:
@@ -107,9 +114,9 @@ def with_drag_laws(model: Model, laws: Mapping[str, DragLaw]) -> Model:
     laws = {label: law for label, law in laws.items() if not isinstance(law, ConstantDrag)}
     if not laws:
         return model
-    known = plain_drag(model)
-    if lost := [label for label in laws if label not in known]:
-        raise ValueError(f"{lost[0]}: expected a coefficient of plain Morison drag ({', '.join(known) or 'there is none'})")
+    plain = plain_drag(model)
+    if lost := [label for label in laws if label not in plain]:
+        raise ValueError(f"{lost[0]}: expected a coefficient of plain Morison drag ({', '.join(plain) or 'there is none'})")
     loads: list[AbstractLoad] = []
     for load in model.loads:
         taken = {key: laws[label] for label, key in _plain(load).items() if label in laws}
@@ -118,8 +125,8 @@ def with_drag_laws(model: Model, laws: Mapping[str, DragLaw]) -> Model:
             continue
         drag = drag_of(load)
         assert drag is not None
-        if left := {key: value for key, value in drag.Cd.items() if key not in taken}:
-            rest = replace(drag, Cd=left)
+        if remaining := {key: value for key, value in drag.Cd.items() if key not in taken}:
+            rest = replace(drag, Cd=remaining)
             loads.append(replace(load, load=rest) if isinstance(load, SeaStateLaw) else rest)
         for kind in (HighPass, KeuleganCarpenter, SuctionSide):
             if mine := {key: law for key, law in taken.items() if isinstance(law, kind)}:
@@ -154,7 +161,7 @@ def _plain(load: AbstractLoad) -> dict[str, Key]:
 
 
 def _law_of(laws: Mapping[Key, DragLaw], hull: Hull, coupled: bool) -> AbstractDragLaw:
-    """The law of some drag coefficients, from one kind of declared law for each of them."""
+    """The law of some drag coefficients, from the laws of the platform file, all of one kind."""
     numbers: dict[str, dict[Key, Any]] = {}
     for key, law in laws.items():
         for name, value in law.model_dump(exclude={"law"}, exclude_none=True).items():

@@ -13,10 +13,11 @@ def _as_list(value: Any) -> Any:
 
 
 class GuidedMass(Consistent):
-    """A mass, kg, that follows a `point` of the hull, m from the reference point, in the directions that it `moves` in.
+    """A mass (kg) that follows a `point` of the hull in the directions that it `moves` in.
 
-    These are the earth's axes x, y, z. Guides or rails hold it in the others and carry its weight. With `weight: true` the
-    platform carries that (`jaxhydro.loads.GuidedMasses`)."""
+    The point is in m from the reference point. The directions are the earth's axes x, y, z. Guides or rails hold it in the
+    others and carry its weight. With `weight: true` the platform carries that (`jaxhydro.loads.GuidedMasses`).
+    """
 
     name: Text
     mass: Positive
@@ -36,7 +37,7 @@ class GuidedMass(Consistent):
 
 
 class Named(Protocol):
-    """What has a name."""
+    """Entry of the platform file that has a name."""
 
     @property
     def name(self) -> str:

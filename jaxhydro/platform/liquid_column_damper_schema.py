@@ -9,11 +9,12 @@ from jaxhydro.errors import Consistent, NonNegative, Positive, Problem, Text, Ve
 
 
 class LiquidColumnDamper(Consistent):
-    """A U-tube of cross-section `area` (m²) along a horizontal `direction` of the hull, whose middle is at `point` (m).
+    """A U-tube of cross-section `area` (m²) along a horizontal `direction` of the hull.
 
-    `width` (m) is the distance of the columns' centrelines, `column` (m) the height of the liquid at rest above the tube's
-    centreline, `head_loss` (-) and `density` (kg/m³) those of the liquid. It is not part of the mass of `rigid_body`
-    (`jaxhydro.loads.LiquidColumnDampers`)."""
+    The middle of the tube is at `point` (m). `width` (m) is the distance of the columns' centrelines. `column` (m) is the
+    height of the liquid at rest above the tube's centreline. `head_loss` (-) and `density` (kg/m³) are those of the liquid.
+    It is not part of the mass of `rigid_body` (`jaxhydro.loads.LiquidColumnDampers`).
+    """
 
     name: Text
     point: Vector

@@ -11,7 +11,7 @@ class OtherWaves(NamedTuple):
     """Table that was computed for other wave headings than one that is asked for.
 
     Attributes:
-        key: What says the headings: a key of the platform file, or the headings of a file.
+        key: Source of the headings: a key of the platform file, or the headings of a file.
         heading: The heading (deg), or headings in words.
     """
 
@@ -24,21 +24,21 @@ class OtherWaves(NamedTuple):
         return self.heading if isinstance(self.heading, str) else f"{self.heading:g}"
 
 
-def other_waves(key: str, declared: Any, kind: str, heading: float) -> OtherWaves | None:
-    """What a table's headings are where they do not cover a wave heading; None where they do.
+def other_waves(key: str, table: Any, kind: str, heading: float) -> OtherWaves | None:
+    """Headings of a table that do not cover a wave heading; None where they do.
 
     Headings between those of a file are interpolated. A file that cannot be read is left for where it is loaded.
 
     Args:
         key: Key of the table in the platform file.
-        declared: Its contents there, with `file`, `heading`, `by` and `body`.
+        table: Its contents there, with `file`, `heading`, `by` and `body`.
         kind: As in `table_headings`.
         heading: Direction that the waves travel to (deg).
     """
-    if declared.heading is not None:
-        return None if same_heading(declared.heading, heading) else OtherWaves(f"{key}.heading", declared.heading)
+    if table.heading is not None:
+        return None if same_heading(table.heading, heading) else OtherWaves(f"{key}.heading", table.heading)
     try:
-        known = table_headings(declared.file, kind, declared.by, declared.body)
+        headings = table_headings(table.file, kind, table.by, table.body)
     except InputError:
         return None
-    return None if covers(known, heading) else OtherWaves(f"headings of {key}.file", spoken(known))
+    return None if covers(headings, heading) else OtherWaves(f"headings of {key}.file", spoken(headings))

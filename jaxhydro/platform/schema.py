@@ -47,7 +47,10 @@ Exponent = Annotated[float, Field(strict=True, ge=-3, le=3)]
 
 
 class Rotor(Schema):
-    """Thrust (N) of a rotor at its hub (m), and its slope over the wind speed (N s/m), in a steady wind along x."""
+    """Thrust (N) of a rotor at its hub (m), and its slope over the wind speed (N s/m).
+
+    The wind is steady and along x.
+    """
 
     hub: Vector
     thrust: Number = 0.0
@@ -64,12 +67,12 @@ class Water(Schema):
 
 
 def _key(letter: str, diagonal: bool = False) -> AfterValidator:
-    known = [f"{letter}{i}{j}" for i in range(1, 7) for j in range(1, 7) if i == j or not diagonal]
+    keys = [f"{letter}{i}{j}" for i in range(1, 7) for j in range(1, 7) if i == j or not diagonal]
 
     def check(key: str) -> str:
-        if key not in known:
+        if key not in keys:
             kind = "diagonal entries" if diagonal else "entries"
-            raise Faults(Problem("", f"a key among the {kind} {known[0]} to {known[-1]}", shown(key)))
+            raise Faults(Problem("", f"a key among the {kind} {keys[0]} to {keys[-1]}", shown(key)))
         return key
 
     return AfterValidator(check)
@@ -159,13 +162,13 @@ class Line(Schema):
         if self.anchor == self.fairlead:
             raise Faults(Problem("fairlead", "a point that is not the anchor", shown(self.fairlead)))
         pairs = (("stiffness", "pretension"), ("axial_stiffness", "unstretched_length"))
-        given = [[key for key in pair if getattr(self, key) is not None] for pair in pairs]
+        stated = [[key for key in pair if getattr(self, key) is not None] for pair in pairs]
         either = "either stiffness and pretension, or axial_stiffness and unstretched_length"
-        if all(given):
-            raise Faults(Problem("", either, ", ".join(given[0] + given[1])))
-        if not any(given):
+        if all(stated):
+            raise Faults(Problem("", either, ", ".join(stated[0] + stated[1])))
+        if not any(stated):
             raise Faults(Problem("", either, "neither"))
-        for pair, got in zip(pairs, given):
+        for pair, got in zip(pairs, stated):
             if len(got) == 1:
                 lacking = pair[1 - pair.index(got[0])]
                 raise Faults(Problem(lacking, f"a number, since {got[0]} is given", "nothing"))
@@ -180,16 +183,16 @@ class LinearSprings(Schema):
 
     def slackness(self) -> str:
         """Warning of lines that are slack at the reference position; "" where none is."""
-        slack = [(i, *found) for i, line in enumerate(self.lines, 1) if (found := line.slack()) is not None]
+        slack = [(i, *lengths) for i, line in enumerate(self.lines, 1) if (lengths := line.slack()) is not None]
         if not slack:
             return ""
         shown = [f"line {i}: {distance:.4g} m to its anchor, {length:.4g} m unstretched" for i, distance, length in slack[:6]]
         shown += [f"and {len(slack) - 6} more"] if len(slack) > 6 else []
         every = len(slack) == len(self.lines)
-        some = f"{len(slack)} of {len(self.lines)} lines are" if len(slack) > 1 else "one line is"
-        which = "every line is" if every else some
+        counted = f"{len(slack)} of {len(self.lines)} lines are" if len(slack) > 1 else "one line is"
+        subject = "every line is" if every else counted
         return (
-            f"mooring.lines: {which} slack at the reference position ({'; '.join(shown)})"
+            f"mooring.lines: {subject} slack at the reference position ({'; '.join(shown)})"
             + (", so nothing holds the platform there. " if every else ", and pulls nothing there. ")
             + "Lines here are straight, weightless springs: for a catenary take kind: catenary, or kind: stiffness_matrix "
             "with its stiffness and preload (its pull) at the reference position."
@@ -243,14 +246,14 @@ class FromFile(Schema):
         if not self.file:
             return self
         if self.kind is None:
-            said = f"none of {', '.join(self.endings)}"
-            raise Faults(Problem("format", f"wamit, capytaine or nemoh, as the file's ending is {said}", "nothing"))
+            ending = f"none of {', '.join(self.endings)}"
+            raise Faults(Problem("format", f"wamit, capytaine or nemoh, as the file's ending is {ending}", "nothing"))
         program = {"capytaine": "Capytaine", "nemoh": "Nemoh"}.get(self.kind)
         if program is not None:
             for key in self.wamit_only:
                 if key in self.model_fields_set and (value := getattr(self, key)) is not None:
-                    what = "coefficients have dimensions" if key == "length" else "files say it"
-                    raise Faults(Problem(key, f"no {key}, as {program}'s {what}", shown(value)))
+                    reason = "coefficients have dimensions" if key == "length" else "files say it"
+                    raise Faults(Problem(key, f"no {key}, as {program}'s {reason}", shown(value)))
         if self.body is not None and isinstance(self.body, int) == (self.kind == "capytaine"):
             names = f"a number, as {program or 'WAMIT'}'s files have no names"
             expected = "a body's name in quotes" if self.kind == "capytaine" else names
@@ -336,9 +339,10 @@ class Drift(Schema):
 class Excitation(FromFile):
     """First-order wave forces from another program, in place of the strips'.
 
-    The file is WAMIT's `.3`, Capytaine's `.nc` or Nemoh's `.tec`, for waves of a `heading` (deg), or of all headings of the
-    file where none is given. `use`: part of the model, or a candidate of `diagnose`. `second_order`: whether the strips' own
-    second-order forces go with their first-order force, as in a file of drift, or stay (`DiffractionCorrection`).
+    The file is WAMIT's `.3`, Capytaine's `.nc` or Nemoh's `.tec`. It is for waves of a `heading` (deg), or of all headings
+    of the file where none is given. `use`: part of the model, or a candidate of `diagnose`. `second_order`: whether the
+    strips' own second-order forces go with their first-order force, as in a file of drift, or stay
+    (`DiffractionCorrection`).
     """
 
     endings = {".3": "wamit", ".nc": "capytaine", ".tec": "nemoh"}
@@ -413,7 +417,7 @@ class Platform(Consistent):
 
     def files(self) -> dict[str, str]:
         """Paths of the files that the platform file names, by key."""
-        return {key: one.file for key in FILE_KEYS if (one := getattr(self, key)) is not None and one.file}
+        return {key: section.file for key in FILE_KEYS if (section := getattr(self, key)) is not None and section.file}
 
     def of_other_waves(self, heading: float) -> OtherWaves | None:
         """A table that was computed for other wave headings than this one (deg), or None.
@@ -421,8 +425,8 @@ class Platform(Consistent):
         Headings between those of a file are interpolated. A file that cannot be read is left for where it is loaded.
         """
         kinds = {"excitation": (self.excitation and self.excitation.kind) or "", "drift": "wamit drift"}
-        tables = ((key, one, kind) for key, kind in kinds.items() if (one := getattr(self, key)) is not None)
-        return next((other for table in tables if (other := other_waves(*table, heading)) is not None), None)
+        tables = ((key, section, kind) for key, kind in kinds.items() if (section := getattr(self, key)) is not None)
+        return next((mismatch for table in tables if (mismatch := other_waves(*table, heading)) is not None), None)
 
     def _faults(self) -> Iterator[Problem]:
         bed = -self.water.depth
@@ -447,13 +451,13 @@ class Platform(Consistent):
         unused = [g for g in self.coefficients if g not in groups | owners(self.coefficients)]
         for group in missing:
             i = next(i for i, member in enumerate(self.members) if member.group == group)
-            known, hint = ", ".join(self.coefficients) or "none", suggest(group, self.coefficients)
-            yield Problem(f"members[{i}].group", f"a group of `coefficients` ({known})", shown(group), hint)
+            names, hint = ", ".join(self.coefficients) or "none", suggest(group, self.coefficients)
+            yield Problem(f"members[{i}].group", f"a group of `coefficients` ({names})", shown(group), hint)
         for group in unused:
             if suggest(group, missing) or len(missing) == len(unused) == 1:
                 continue  # one group under two names has been told above
-            known, hint = ", ".join(sorted(groups)) or "none", suggest(group, groups)
-            yield Problem(f"coefficients.{group}", f"a group that members belong to ({known})", shown(group), hint)
+            names, hint = ", ".join(sorted(groups)) or "none", suggest(group, groups)
+            yield Problem(f"coefficients.{group}", f"a group that members belong to ({names})", shown(group), hint)
 
 
 def builtin_platforms() -> tuple[str, ...]:
@@ -479,14 +483,14 @@ def load_platform(path_or_name: str | PathLike[str]) -> Platform:
     Raises:
         InputError: The file has mistakes; all of them are listed.
     """
-    name, known = str(path_or_name), builtin_platforms()
+    name, names = str(path_or_name), builtin_platforms()
     is_path = not isinstance(path_or_name, str) or "/" in name or name.endswith((".yaml", ".yml"))
-    if not is_path and name.lower() in known:
+    if not is_path and name.lower() in names:
         with resources.as_file(resources.files("jaxhydro") / "platforms" / f"{name.lower()}.yaml") as path:
             return validate(Platform, read_yaml(path, "platform"), f"{name} (built in)")
     if not is_path and not Path(name).exists():
-        expected = f"a YAML file or a built-in platform ({', '.join(known)})"
-        raise InputError(name, [Problem("", expected, shown(name), suggest(name, known))])
+        expected = f"a YAML file or a built-in platform ({', '.join(names)})"
+        raise InputError(name, [Problem("", expected, shown(name), suggest(name, names))])
     platform = validate(Platform, read_yaml(path_or_name, "platform"), name)
     folder = Path(path_or_name).absolute().parent
     beside = {

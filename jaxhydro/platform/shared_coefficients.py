@@ -20,7 +20,7 @@ def sharing_faults(groups: Mapping[str, Coefficients], with_members: set[str]) -
                 continue
             path = _path(groups, group, name)
             if path[-1] == group and len(path) > 1:
-                told |= {(one, name) for one in path}
+                told |= {(link, name) for link in path}
             if (fault := _fault(groups, group, name, owner, path)) is not None:
                 yield fault
         for kind in "tz":
@@ -35,16 +35,19 @@ def sharing_faults(groups: Mapping[str, Coefficients], with_members: set[str]) -
     for group in owners(groups) & groups.keys() - with_members:
         for name in COEFFICIENTS:
             if name in groups[group].model_fields_set and (group, name) not in used:
-                found = f"one that nothing uses, as no member is of the group {group}"
-                yield Problem(f"coefficients.{group}.{name}", "a coefficient that another group shares", found)
+                actual = f"one that nothing uses, as no member is of the group {group}"
+                yield Problem(f"coefficients.{group}.{name}", "a coefficient that another group shares", actual)
         for kind in "tz":
             if f"drag_{kind}" in groups[group].model_fields_set and (group, f"Cd_{kind}") not in used:
-                expected, found = "a law of a coefficient that another group shares", "one that nothing uses"
-                yield Problem(f"coefficients.{group}.drag_{kind}", expected, found)
+                expected, actual = "a law of a coefficient that another group shares", "one that nothing uses"
+                yield Problem(f"coefficients.{group}.drag_{kind}", expected, actual)
 
 
 def _path(groups: Mapping[str, Coefficients], group: str, name: str) -> list[str]:
-    """Groups that name one another from `group` on, up to one that names none, or to one that was met before."""
+    """Groups that name one another, from `group` on.
+
+    The last one names none, or was met before.
+    """
     path = [group]
     while (row := groups.get(path[-1])) is not None and name in row.shared():
         path.append(row.shared()[name])
@@ -54,17 +57,17 @@ def _path(groups: Mapping[str, Coefficients], group: str, name: str) -> list[str
 
 
 def _fault(groups: Mapping[str, Coefficients], group: str, name: str, owner: str, path: list[str]) -> Problem | None:
-    where, others = f"coefficients.{group}.{name}", [one for one in groups if one != group]
-    known = [one for one in others if name in groups[one].numbers() and name in groups[one].model_fields_set]
-    expected = f"a number >= 0, or a group with a number for {name} ({', '.join(known) or 'there is none'})"
+    where, others = f"coefficients.{group}.{name}", [other for other in groups if other != group]
+    candidates = [other for other in others if name in groups[other].numbers() and name in groups[other].model_fields_set]
+    expected = f"a number >= 0, or a group with a number for {name} ({', '.join(candidates) or 'there is none'})"
     if owner not in groups:
-        return Problem(where, expected, shown(owner), _number_in_quotes(owner) or suggest(owner, known))
+        return Problem(where, expected, shown(owner), _number_in_quotes(owner) or suggest(owner, candidates))
     if path[-1] == group:
         return Problem(where, expected, shown(owner), f"{' -> '.join(path)}: none of them has a number.")
     if len(path) > 2:
-        end = path[-1] if path[-1] in known else ""
+        end = path[-1] if path[-1] in candidates else ""
         return Problem(where, expected, shown(owner), f"{owner} shares it itself." + (f" Name {end} here." if end else ""))
-    if owner not in known:
+    if owner not in candidates:
         return Problem(where, expected, f"{shown(owner)}, which has no {name}")
     return None
 

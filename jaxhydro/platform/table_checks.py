@@ -47,47 +47,52 @@ def as_column(omega: Float[np.ndarray, " n"], by: str) -> Float[np.ndarray, " n"
 def excitation_column(
     omega: Float[np.ndarray, " n"], force: Float[np.ndarray, "6 n"], by: str, source: str, hull: LongWaves
 ) -> list[str]:
-    """A warning where a table of wave forces has the long waves of another column than declared.
+    """A warning where a table of wave forces has the long waves of another first column than stated.
 
-    A long wave lifts by rho g A per metre of its amplitude, and pushes by the mass and added mass times the water's
-    acceleration (Newman 1977, Marine Hydrodynamics, section 6.17). Nothing is said where more than one column would do, or the
-    declared one does.
+    A long wave lifts by rho g A per metre of its amplitude. It pushes by the mass and added mass times the water's
+    acceleration (Newman 1977, Marine Hydrodynamics, section 6.17). There is no warning where more than one column would do,
+    or the stated one does.
 
     Args:
         omega: Frequencies as read, rad/s.
         force: X of the six motions, N/m and N m/m, complex.
-        by: What the first column was declared to be.
+        by: Stated quantity of the first column.
         source: The file.
         hull: The platform.
     """
     if by not in KINDS or hull.stiffness <= 0:
         return []
     column = as_column(omega, by)
-    seen = {kind: _long_wave(to_omega(column, kind), force, hull) for kind in KINDS}
-    heave, surge, shortest = seen[by]
+    by_kind = {kind: _long_wave(to_omega(column, kind), force, hull) for kind in KINDS}
+    heave, surge, shortest = by_kind[by]
     turned = heave < NO_HEAVE and ALL_HEAVE[0] < shortest < ALL_HEAVE[1]
     if not turned and (surge is None or NO_SURGE[0] < surge < NO_SURGE[1]):
         return []
     fits = [
         kind
-        for kind, (lift, push, _) in seen.items()
+        for kind, (lift, push, _) in by_kind.items()
         if kind != by and LONG_HEAVE[0] < lift < LONG_HEAVE[1] and (push is None or LONG_SURGE[0] < push < LONG_SURGE[1])
     ]
     if not fits:
         return []
-    said = f"read by {by}, its longest wave lifts {heave:.2g} of rho g A"
+    sentence = f"read by {by}, its longest wave lifts {heave:.2g} of rho g A"
     if surge is not None:
-        said += f" and pushes {surge:.2g} of mass times acceleration"
+        sentence += f" and pushes {surge:.2g} of mass times acceleration"
     way = " or ".join(f"{kind!r}" if kind == "period" else kind for kind in fits).replace("'", "")
     probably = WORDS[fits[0]] if len(fits) == 1 else "a frequency"
-    return [f"{source}: the first column is probably {probably}: {said}. See `excitation.by`: {way}"]
+    return [f"{source}: the first column is probably {probably}: {sentence}. See `excitation.by`: {way}"]
 
 
 def _long_wave(
     omega: Float[np.ndarray, " n"], force: Float[np.ndarray, "6 n"], hull: LongWaves
 ) -> tuple[float, float | None, float]:
-    """Heave force of the longest wave over C33, its horizontal one over mass times acceleration (None: it has none), and heave
-    force of the shortest wave over C33."""
+    """Forces of the longest and the shortest wave over those of theory.
+
+    Returns:
+        Heave force of the longest wave over C33.
+        Horizontal force of the longest wave over mass times acceleration; None: it has none.
+        Heave force of the shortest wave over C33.
+    """
     longest, shortest = int(np.argmin(omega)), int(np.argmax(omega))
     lift = abs(force[2, longest]) / hull.stiffness
     push = math.hypot(abs(force[0, longest]), abs(force[1, longest]))
@@ -98,14 +103,14 @@ def _long_wave(
 
 
 def drift_column(curve: Float[np.ndarray, " n"], by: str, source: str) -> list[str]:
-    """A warning where the drift of regular waves is that of another column than declared.
+    """A warning where the drift of regular waves is that of another first column than stated.
 
-    Long waves do not drift a body, short ones do, as they are sent back (Faltinsen 1990, Sea Loads on Ships and Offshore
+    Long waves do not drift a body. Short ones do, as they are sent back (Faltinsen 1990, Sea Loads on Ships and Offshore
     Structures, chapter 5).
 
     Args:
         curve: Size of the horizontal force on the diagonal of the table, by ascending frequency as read.
-        by: What the columns were declared to be.
+        by: Stated quantity of the columns.
         source: The file.
     """
     largest = float(curve.max(initial=0.0))
@@ -115,75 +120,75 @@ def drift_column(curve: Float[np.ndarray, " n"], by: str, source: str) -> list[s
     return [f"{source}: the first column is probably {way}. Read by {by}, the longest waves drift most and the shortest not"]
 
 
-def asymmetry(found: RadiationCoefficients, source: str) -> list[str]:
+def asymmetry(coefficients: RadiationCoefficients, source: str) -> list[str]:
     """Warning where added mass or damping is far from symmetric (Newman 1977, section 6.17).
 
     References:
         Newman (1977), Marine Hydrodynamics, section 6.17 (symmetric without forward speed).
     """
-    said = []
-    for name, cube in (("added mass", found.added_mass), ("damping", found.damping)):
-        own = np.sqrt(np.abs(np.einsum("wii->wi", cube)).max(axis=0))
-        size = np.outer(own, own)
+    warnings = []
+    for name, cube in (("added mass", coefficients.added_mass), ("damping", coefficients.damping)):
+        scale = np.sqrt(np.abs(np.einsum("wii->wi", cube)).max(axis=0))
+        size = np.outer(scale, scale)
         off = np.abs(cube - cube.transpose(0, 2, 1)).max(axis=0) / np.where(size > 0, size, np.inf)
         if off.max() > MAX_ASYMMETRY:
             i, j = np.unravel_index(int(off.argmax()), off.shape)
             pair = f"({i + 1}, {j + 1}) and ({j + 1}, {i + 1})"
-            said.append(f"{source}: {name} is not symmetric: {pair} differ by {off.max():.0%} of the motions' own")
-    return said
+            warnings.append(f"{source}: {name} is not symmetric: {pair} differ by {off.max():.0%} of the motions' own")
+    return warnings
 
 
-def radiation_column(found: RadiationCoefficients, space: Realisation, by: str | None, source: str) -> list[str]:
+def radiation_column(coefficients: RadiationCoefficients, space: Realisation, by: str | None, source: str) -> list[str]:
     """Warning where added mass and damping violate the Kramers-Kronig relations (Ogilvie 1964).
 
-    Where it does follow with the first column taken for a frequency in place of a period, or the other way round, that is
-    said. Rad/s and Hz cannot be told apart so: the relations hold at any scale of frequency.
+    The warning says where it does follow with the first column taken for a frequency in place of a period, or the other way
+    round. Rad/s and Hz cannot be told apart so: the relations hold at any scale of frequency.
 
     Args:
-        found: The coefficients.
+        coefficients: The coefficients.
         space: A state space that follows their damping.
-        by: What the first column was declared to be; None: the file says it.
+        by: Stated quantity of the first column; None: the file says it.
         source: The file.
 
     References:
         Ogilvie (1964), 5th Symposium on Naval Hydrodynamics.
     """
-    misfit = _misfit(found, space)
+    misfit = _misfit(coefficients, space)
     if misfit is None or misfit < MIN_UNRELATED_MISFIT:
         return []
     apart = f"added mass does not follow from damping (Kramers-Kronig): it misses {min(misfit, 9.99):.0%} of its variation"
     plain = f"{source}: {apart}. Damping is used: see where the file is from"
     if by is None:
         return [plain]
-    other = "rad/s" if by == "period" else "period"
-    omega = to_omega(as_column(found.omega, by), other)
+    alternative = "rad/s" if by == "period" else "period"
+    omega = to_omega(as_column(coefficients.omega, by), alternative)
     order = np.argsort(omega)
-    damping = found.damping / found.omega[:, None, None] * omega[:, None, None]
-    turned = RadiationCoefficients(omega[order], found.added_mass[order], damping[order])
+    damping = coefficients.damping / coefficients.omega[:, None, None] * omega[:, None, None]
+    turned = RadiationCoefficients(omega[order], coefficients.added_mass[order], damping[order])
     try:
-        there = _misfit(turned, realise(turned, 0.05, 20))
+        turned_misfit = _misfit(turned, realise(turned, 0.05, 20))
     except ValueError:
-        there = None
-    if there is None or there > MAX_RELATED_MISFIT:
+        turned_misfit = None
+    if turned_misfit is None or turned_misfit > MAX_RELATED_MISFIT:
         return [plain]
-    way = "a frequency: `radiation.by`: rad/s or Hz" if other == "rad/s" else "a period: `radiation.by`: period"
+    way = "a frequency: `radiation.by`: rad/s or Hz" if alternative == "rad/s" else "a period: `radiation.by`: period"
     return [f"{source}: the first column is probably {way}. Read by {by}, {apart}"]
 
 
-def _misfit(found: RadiationCoefficients, space: Realisation) -> float | None:
+def _misfit(coefficients: RadiationCoefficients, space: Realisation) -> float | None:
     """Misfit of a state space's added mass, over its variation (median of motions), or None."""
-    theirs = np.einsum("wii->wi", found.added_mass)
-    ours = np.einsum("wii->wi", space.transfer(found.omega).imag) / found.omega[:, None]
+    theirs = np.einsum("wii->wi", coefficients.added_mass)
+    ours = np.einsum("wii->wi", space.transfer(coefficients.omega).imag) / coefficients.omega[:, None]
     varies = np.maximum(theirs.std(axis=0), ours.std(axis=0))
     used = varies > MIN_VARIATION * np.abs(theirs).mean(axis=0)
-    used &= np.einsum("wii->wi", found.damping).max(axis=0) > 0
+    used &= np.einsum("wii->wi", coefficients.damping).max(axis=0) > 0
     if not used.any():
         return None
     return float(np.median((theirs - ours).std(axis=0)[used] / varies[used]))
 
 
 class Column(NamedTuple):
-    """Frequencies (rad/s) of a file, and what its first column was declared to be."""
+    """Frequencies (rad/s) of a file, and the stated quantity of its first column."""
 
     source: str
     omega: Float[np.ndarray, " n"]
@@ -191,12 +196,12 @@ class Column(NamedTuple):
 
 
 def same_columns(columns: Sequence[Column]) -> list[str]:
-    """Warnings where two files share first-column values that were declared to be different quantities."""
-    said = []
-    for one, other in combinations(columns, 2):
-        few, many = sorted((as_column(one.omega, one.by), as_column(other.omega, other.by)), key=len)
-        found = np.abs(many[:, None] / few - 1).min(axis=0) < COLUMN_TOLERANCE
-        if one.by != other.by and found.all():
-            files = f"{one.source} and {other.source} have the same first column"
-            said.append(f"{files}, and are read by {one.by} and by {other.by}: see `by`")
-    return said
+    """Warnings where two files have the same first column, stated to be different quantities."""
+    warnings = []
+    for first, second in combinations(columns, 2):
+        few, many = sorted((as_column(first.omega, first.by), as_column(second.omega, second.by)), key=len)
+        shared = np.abs(many[:, None] / few - 1).min(axis=0) < COLUMN_TOLERANCE
+        if first.by != second.by and shared.all():
+            files = f"{first.source} and {second.source} have the same first column"
+            warnings.append(f"{files}, and are read by {first.by} and by {second.by}: see `by`")
+    return warnings

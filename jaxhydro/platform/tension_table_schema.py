@@ -22,11 +22,11 @@ class Rope(Consistent):
     interpolation: Literal["linear", "pchip"] = "linear"
 
     def _faults(self) -> Iterator[Problem]:
-        given = [key for key in ("strain", "stretch") if getattr(self, key) is not None]
-        if len(given) != 1:
-            yield Problem("", "either strain or stretch", "both" if given else "neither")
+        stated = [key for key in ("strain", "stretch") if getattr(self, key) is not None]
+        if len(stated) != 1:
+            yield Problem("", "either strain or stretch", "both" if stated else "neither")
             return
-        (key,) = given
+        (key,) = stated
         column = getattr(self, key)
         if len(column) != len(self.tension):
             yield Problem("tension", f"{len(column)} numbers, as {key} has", f"{len(self.tension)} numbers")
@@ -51,7 +51,10 @@ class Rope(Consistent):
 
 
 class RopeLine(AnchoredLine, Consistent):
-    """Straight line of a rope from anchor to fairlead (m), copied to each `heading` (deg) about the z axis."""
+    """Straight line of a rope from anchor to fairlead (m), copied to each `heading` (deg).
+
+    Headings are about the z axis.
+    """
 
     rope: Text
     unstretched_length: Positive
@@ -69,10 +72,10 @@ class TensionTableMooring(Consistent):
     lines: Annotated[tuple[RopeLine, ...], Field(min_length=1)]
 
     def _faults(self) -> Iterator[Problem]:
-        known, used = ", ".join(self.ropes), {line.rope for line in self.lines}
+        names, used = ", ".join(self.ropes), {line.rope for line in self.lines}
         for i, line in enumerate(self.lines):
             if line.rope not in self.ropes:
-                expected = f"a rope of `ropes` ({known})"
+                expected = f"a rope of `ropes` ({names})"
                 yield Problem(f"lines[{i}].rope", expected, shown(line.rope), suggest(line.rope, self.ropes))
         for name in self.ropes:
             if name not in used and not suggest(name, used - set(self.ropes)):
@@ -92,12 +95,12 @@ class TensionTableMooring(Consistent):
                     slack.append(f"rope {number}: {line.distance():.4g} m to its anchor, {length}")
                 elif taken > rope.entries()[-1]:
                     beyond.append(f"rope {number}: {taken:.4g}, and {rope.entries()[-1]:.4g} at the table's end")
-        found = []
+        remarks = []
         if slack:
-            found.append(f"mooring.lines: slack at the reference position, and pulling nothing there: {'; '.join(slack)}")
+            remarks.append(f"mooring.lines: slack at the reference position, and pulling nothing there: {'; '.join(slack)}")
         if beyond:
-            found.append(
+            remarks.append(
                 "mooring.lines: stretched beyond the table at the reference position, where the tension goes on as steeply "
                 f"as at its end: {'; '.join(beyond)}"
             )
-        return found
+        return remarks

@@ -9,10 +9,12 @@ from jaxhydro.errors import Consistent, NonNegative, Positive, Problem, Text, Ve
 
 
 class TunedMassDamper(Consistent):
-    """A mass (kg) on a damped spring that slides along a `direction` of the hull through `point` (m, from the reference point).
+    """A mass (kg) on a damped spring that slides along a `direction` of the hull.
 
-    The spring has a `period` (s) or a `stiffness` (N/m), the damper a `damping_ratio` (-) or a `damping` (N s/m), all with
-    the hull held. The mass is not part of that of `rigid_body` (`jaxhydro.loads.TunedMassDampers`)."""
+    Its line goes through `point` (m, from the reference point). The spring has a `period` (s) or a `stiffness` (N/m), the
+    damper a `damping_ratio` (-) or a `damping` (N s/m), all with the hull held. The mass is not part of that of `rigid_body`
+    (`jaxhydro.loads.TunedMassDampers`).
+    """
 
     name: Text
     mass: Positive
@@ -24,10 +26,10 @@ class TunedMassDamper(Consistent):
     damping: NonNegative | None = None
 
     def _faults(self) -> Iterator[Problem]:
-        for one, other in (("period", "stiffness"), ("damping_ratio", "damping")):
-            given = [key for key in (one, other) if getattr(self, key) is not None]
-            if len(given) != 1:
-                yield Problem("", f"either {one} or {other}", "both" if given else "neither")
+        for first, second in (("period", "stiffness"), ("damping_ratio", "damping")):
+            stated = [key for key in (first, second) if getattr(self, key) is not None]
+            if len(stated) != 1:
+                yield Problem("", f"either {first} or {second}", "both" if stated else "neither")
         if not any(self.direction):
             yield Problem("direction", "a vector that is not 0", shown(list(self.direction)))
 

@@ -28,10 +28,10 @@ def outline(member: Member) -> np.ndarray:
         Points (m) of every section, (sections, points, 3).
     """
     section = circle(POINTS) if member.circular else CORNERS
-    one, two = (np.asarray(direction) for direction in member.directions)
+    first, second = (np.asarray(direction) for direction in member.directions)
     middles = member.a + np.asarray(member.stations)[:, None] * (member.b - member.a)
     across = section[None] * np.asarray(member.sizes)[:, None]
-    return middles[:, None] + across[..., :1] * one + across[..., 1:] * two
+    return middles[:, None] + across[..., :1] * first + across[..., 1:] * second
 
 
 def hull_figure(members: Sequence[Member], title: str) -> Figure:
@@ -41,7 +41,7 @@ def hull_figure(members: Sequence[Member], title: str) -> Figure:
         members: The members.
         title: Title of the figure.
     """
-    return drawing([outline(one) for one in members], title)
+    return drawing([outline(member) for member in members], title)
 
 
 def drawing(outlines: Sequence[np.ndarray], title: str) -> Figure:

@@ -18,7 +18,7 @@ Figure = Any
 
 
 def moving(channels: Mapping[str, np.ndarray]) -> list[str]:
-    """Names of what is not next to still; the first one at least."""
+    """Names of channels that are not next to still; the first one at least."""
     size = {name: float(np.ptp(values)) for name, values in channels.items()}
     largest = {unit: max((size[n] for n in size if unit_of(n) == unit), default=0.0) for unit in ("m", "deg")}
     return [name for name in channels if size[name] > max(1e-6, 1e-3 * largest[unit_of(name)])] or list(channels)[:1]
@@ -46,7 +46,7 @@ def about_highest_crest(time: np.ndarray, wave: np.ndarray, length: float, start
 def record_figure(
     time: np.ndarray, channels: Mapping[str, np.ndarray], start: float, title: str, colour: str = SIMULATED
 ) -> Figure:
-    """All of the record, motions in a colour; what statistics leave out, until `start` (s), is grey."""
+    """All of the record, motions in a colour; the part before `start` (s), without statistics, is grey."""
     names = moving(channels)
     figure, axes = stack([PANEL_HEIGHT] * len(names))
     artists = {}
@@ -65,14 +65,14 @@ def window_figure(
 ) -> Figure:
     """Figure of `WINDOW` (s) about the highest crest after `start` (s), with second-order waves."""
     names = moving(channels)
-    seen = about_highest_crest(time, channels["wave"], WINDOW, start)
+    window = about_highest_crest(time, channels["wave"], WINDOW, start)
     figure, axes = stack([PANEL_HEIGHT] * len(names))
     artists = {}
     for ax, name in zip(axes, names, strict=True):
-        (line,) = ax.plot(time[seen], channels[name][seen], color=_colour(name), lw=0.9)
+        (line,) = ax.plot(time[window], channels[name][window], color=_colour(name), lw=0.9)
         ax.set_ylabel(f"{name.capitalize()} ({unit_of(name)})")
         if name == "wave" and first_order is not None:
-            (second,) = ax.plot(time[seen], (channels[name] - first_order)[seen], color=MEASURED, lw=0.8)
+            (second,) = ax.plot(time[window], (channels[name] - first_order)[window], color=MEASURED, lw=0.8)
             artists = {"wave": line, "its second order": second}
     axes[-1].set_xlabel("Time (s)")
     header(figure, f"{title}, about the highest crest", artists)

@@ -61,10 +61,10 @@ def draw_densities(ax: Axes, channel: str, densities: Iterable[Density], highest
     """
     artists: dict[str, Artist] = {}
     top = 0.0
-    for one in densities:
-        shown = (one.frequency > 0) & (one.frequency <= highest)
-        artists[one.label] = ax.plot(one.frequency[shown], one.density[shown], color=one.colour, lw=one.width)[0]
-        top = max(top, float(one.density[shown].max()))
+    for curve in densities:
+        shown = (curve.frequency > 0) & (curve.frequency <= highest)
+        artists[curve.label] = ax.plot(curve.frequency[shown], curve.density[shown], color=curve.colour, lw=curve.width)[0]
+        top = max(top, float(curve.density[shown].max()))
     if top > 0:
         least, most = top * 10**-DECADES, top * 2.5
         ax.set_yscale("log")

@@ -6,7 +6,7 @@ from jaxhydro.parameters import AbstractEffect
 
 
 class AbstractSensorEffect(AbstractEffect):
-    """Base class of what changes the record of a motion, and not the motion."""
+    """Base class of effects that change the record of a motion, and not the motion."""
 
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
         """Reading of the motion sensors at a position (m, rad), (..., 6).

@@ -19,7 +19,7 @@ class SensorReference(AbstractSensorEffect):
     y = p + R o - o: the surge, sway and heave that are recorded are those of a point at o = (x, 0, z) in body axes.
 
     R is the exact rotation (Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 2.2). The
-    point's own place is taken off, so that at zero attitude it reads as the reference point does. To first order surge gets
+    point's own position is taken off, so that at zero attitude it reads as the reference point does. To first order surge gets
     + z theta, heave - x theta of the pitch theta, sway - z phi + x psi. Angles are those of any point. No force: the motion
     is the same.
     """
@@ -31,7 +31,7 @@ class SensorReference(AbstractSensorEffect):
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
         offset = jnp.stack([self.x, jnp.zeros(()), self.z])
 
-        def of(one: Float[Array, "6"]) -> Float[Array, "6"]:
-            return jnp.concatenate([one[:3] + (rotation(one[3:]) @ offset - offset), one[3:]])
+        def reading(motion: Float[Array, "6"]) -> Float[Array, "6"]:
+            return jnp.concatenate([motion[:3] + (rotation(motion[3:]) @ offset - offset), motion[3:]])
 
-        return jnp.vectorize(of, signature="(n)->(n)")(position)
+        return jnp.vectorize(reading, signature="(n)->(n)")(position)

@@ -51,7 +51,7 @@ def simulate_in_halves(
         if not half:
             return [None]
         halves = (seas[:half], seas[half:])
-        return [one for some in halves for one in simulate_in_halves(model, some, times, limit, kernel, precision)]
+        return [motion for part in halves for motion in simulate_in_halves(model, part, times, limit, kernel, precision)]
 
 
 def simulate_together(
@@ -79,21 +79,21 @@ def simulate_together(
     alike: dict[Any, list[tuple[int, Any]]] = {}
     for i, sea in enumerate(seas):
         waves = sea.components
-        here = model.in_sea(state_of(waves))
+        model_in_sea = model.in_sea(state_of(waves))
         try:
-            start = State(equilibrium(here), jnp.zeros(6), here.settled(jnp.zeros(6)))
+            start = State(equilibrium(model_in_sea), jnp.zeros(6), model_in_sea.settled(jnp.zeros(6)))
         except EquilibriumError:
             continue
-        own = (here, start, waves.amplitude, waves.phase)
-        shape = tuple(x.shape for x in jax.tree.leaves(eqx.filter(own, eqx.is_array)))
-        alike.setdefault((float(waves.heading[0]), jax.tree.structure(own), shape), []).append((i, own))
-    points, at = jnp.asarray(model.hull.extremities()), jnp.asarray(times)
+        case = (model_in_sea, start, waves.amplitude, waves.phase)
+        shape = tuple(x.shape for x in jax.tree.leaves(eqx.filter(case, eqx.is_array)))
+        alike.setdefault((float(waves.heading[0]), jax.tree.structure(case), shape), []).append((i, case))
+    points, output_times = jnp.asarray(model.hull.extremities()), jnp.asarray(times)
     for same in alike.values():
         shared, step, steps = shared_preparation(model, seas[same[0][0]], times, limit)
-        padded = [own for _, own in same] + [same[-1][1]] * (power_of_two(len(same)) - len(same))
-        own, axes = _stacked(padded)
+        padded = [case for _, case in same] + [same[-1][1]] * (power_of_two(len(same)) - len(same))
+        cases, axes = _stacked(padded)
         sizes = (jnp.asarray(step), steps, kernel, precision)
-        position, reached, bound = _vectorised(own, axes, len(padded), shared, points, at, *sizes)
+        position, reached, bound = _vectorised(cases, axes, len(padded), shared, points, output_times, *sizes)
         spectra = [None] * len(padded) if bound is None else np.asarray(bound)
         for (i, _), moved, far, spectrum in zip(same, np.asarray(position), np.asarray(reached), spectra):
             if not far > shared.half:
@@ -121,18 +121,18 @@ def _stacked(each: Sequence[Any]) -> tuple[Any, Any]:
 
     Leaves that all trees share are not stacked.
     """
-    leaves, tree = zip(*(jax.tree.flatten(one) for one in each))
+    leaves, tree = zip(*(jax.tree.flatten(case) for case in each))
     alike = [all(x is column[0] for x in column) or not eqx.is_array(column[0]) for column in zip(*leaves)]
     stacked = [c[0] if same else np.stack([np.asarray(x) for x in c]) for same, c in zip(alike, zip(*leaves))]
     return jax.tree.unflatten(tree[0], stacked), jax.tree.unflatten(tree[0], [None if same else 0 for same in alike])
 
 
 @eqx.filter_jit
-def _vectorised(own, axes, count, shared, points, times, step, steps, kernel, precision):
+def _vectorised(cases, axes, count, shared, points, times, step, steps, kernel, precision):
     like = shared.like
 
-    def one(own):
-        model, start, amplitude, phase = own
+    def simulated(case):
+        model, start, amplitude, phase = case
         waves = eqx.tree_at(lambda w: (w.amplitude, w.phase), like.components, (amplitude, phase))
         sea = shared.of(waves)
         grid = integrate(model, sea, start, times[0], step, steps, "ab4", kernel=kernel, precision=precision)
@@ -141,4 +141,4 @@ def _vectorised(own, axes, count, shared, points, times, step, steps, kernel, pr
         bound = elevation_spectrum(waves, like.environment, jnp.zeros(2), *pairs) if like.order == 2 else None
         return position, farthest(position, points, model.through(sea)), bound
 
-    return eqx.filter_vmap(one, in_axes=(axes,), axis_size=count)(own)
+    return eqx.filter_vmap(simulated, in_axes=(axes,), axis_size=count)(cases)

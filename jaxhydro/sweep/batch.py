@@ -21,7 +21,7 @@ from jaxhydro.dynamics.statics import EquilibriumError
 from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.loads import AnyLines
+from jaxhydro.loads import AbstractLines
 from jaxhydro.platform.build import model_of
 from jaxhydro.platform.schema import load_platform
 from jaxhydro.rotations import rotation
@@ -44,7 +44,7 @@ class Setup(NamedTuple):
         model: The platform.
         times: Times of the records (s), (t,).
         limit: Largest time step (s).
-        calibrated: What of a calibration is used, or None.
+        calibrated: Part of a calibration that is used, or None.
     """
 
     plan: Plan
@@ -66,15 +66,15 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
         InputError: A file has mistakes, or a table was computed for waves of another heading.
         EquilibriumError: The platform has no static equilibrium.
     """
-    declared = load_platform(platform)
+    description = load_platform(platform)
     for heading in sorted(set().union(*(case.towards for case in plan.cases))):
-        if (other := declared.of_other_waves(heading)) is not None:
+        if (mismatch := description.of_other_waves(heading)) is not None:
             expected = f"{heading:g} deg, as in the sweep's headings"
-            raise InputError(str(platform), [Problem(other.key, expected, f"{other.words} deg")])
-    model = model_of(declared, plan.diffraction)
+            raise InputError(str(platform), [Problem(mismatch.key, expected, f"{mismatch.words} deg")])
+    model = model_of(description, plan.diffraction)
     used = None
     if calibration is not None:
-        model, used = with_calibration(model, str(platform), declared.name, calibration)
+        model, used = with_calibration(model, str(platform), description.name, calibration)
     times = plan.time_step * np.arange(math.floor(plan.duration / plan.time_step * (1 + 1e-12)) + 1)
     limit = largest_step(model, plan.cutoff) if plan.step is None else plan.step
     return Setup(plan, model, times, limit, used)
@@ -186,8 +186,8 @@ def _results(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray, wa
         model = setup.model.in_sea(state_of(sea.components))
         tension = np.asarray(_tensions(model, jnp.asarray(position)))
         channels |= {f"line{i + 1}": column for i, column in enumerate(tension.T)}
-    kept = run_results(times, plan.start, channels, run.case.state.peak_period, plan.exponents, plan.equivalent_frequency)
-    return kept if plan.time_series else kept._replace(series=None)
+    results = run_results(times, plan.start, channels, run.case.state.peak_period, plan.exponents, plan.equivalent_frequency)
+    return results if plan.time_series else results._replace(series=None)
 
 
 def elevation(
@@ -216,8 +216,8 @@ def elevation(
     return np.resize(np.fft.irfft(spectrum, count) * (count / 2), len(times))
 
 
-def _lines(model: Model) -> AnyLines | None:
-    return next((load for load in model.loads if isinstance(load, AnyLines)), None)
+def _lines(model: Model) -> AbstractLines | None:
+    return next((load for load in model.loads if isinstance(load, AbstractLines)), None)
 
 
 def _line_count(model: Model) -> int:
@@ -238,5 +238,5 @@ def failure_reason(error: Exception) -> str:
     if isinstance(error, InputError):
         return "; ".join(f"expected {problem.expected}, found {problem.found}" for problem in error.problems)
     expected = isinstance(error, ValueError | EquilibriumError)
-    said = " ".join(str(error).split())[:500]
-    return said if expected and said else f"{type(error).__name__}: {said}"
+    message = " ".join(str(error).split())[:500]
+    return message if expected and message else f"{type(error).__name__}: {message}"

@@ -136,8 +136,8 @@ class Plan:
             "headings": ("headings", lambda case: case.heading, lambda heading: f"heading {heading:g} deg"),
             "scatter": ("sea states", lambda case: case.state, named),
         }
-        for key, (many, of, text) in by.items():
-            mine, others = (_shares(plan.cases, of) for plan in (self, other))
+        for key, (many, value_of, text) in by.items():
+            mine, others = (_shares(plan.cases, value_of) for plan in (self, other))
             if len(mine) != len(others):
                 return key, f"{len(mine)} {many}", f"{len(others)}"
             pairs = list(zip(mine.items(), others.items()))
@@ -146,7 +146,7 @@ class Plan:
                 # those of all others are divided by another sum
                 ratio = [math.log(b[1] / a[1]) for a, b in pairs]
                 usual = statistics.median_low(ratio)
-                away = [abs(one - usual) for one in ratio]
+                away = [abs(logarithm - usual) for logarithm in ratio]
                 moved = pairs[away.index(max(away))] if max(away) > 1e-9 else None
             if moved is not None:
                 before, after = (f"{text(value)}, with {share:.4%} of the life" for value, share in moved)
@@ -154,12 +154,12 @@ class Plan:
         return "scatter", f"{len(self.cases)} cases of a probability above 0", f"{len(other.cases)}"
 
 
-def _shares(cases: Sequence[Case], of: Callable[[Case], Any]) -> dict[Any, float]:
-    """Fractions of the lifetime, summed by the value of `of` for each case."""
-    found: dict[Any, float] = {}
+def _shares(cases: Sequence[Case], value_of: Callable[[Case], Any]) -> dict[Any, float]:
+    """Fractions of the lifetime, summed by the value of `value_of` for each case."""
+    shares: dict[Any, float] = {}
     for case in cases:
-        found[of(case)] = found.get(of(case), 0.0) + case.probability
-    return found
+        shares[value_of(case)] = shares.get(value_of(case), 0.0) + case.probability
+    return shares
 
 
 def _short(value: Any) -> str:
@@ -185,18 +185,18 @@ def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[st
     notes: list[str] = []
     shares: dict[tuple[State, float | None], float] = {}
     twice: dict[State, None] = {}
-    for one in states:
-        state = State.of(one)
-        if (state, one.heading) in shares:
+    for row in states:
+        state = State.of(row)
+        if (state, row.heading) in shares:
             twice[state] = None
-        shares[state, one.heading] = shares.get((state, one.heading), 0.0) + one.probability
+        shares[state, row.heading] = shares.get((state, row.heading), 0.0) + row.probability
     if twice:
         more = f" and {len(twice) - 1} more are" if len(twice) > 1 else " is"
         notes.append(f"{named(next(iter(twice)))}{more} in the table more than once: run once, and its probabilities add up")
     every = [
         Case(state.hs, state.tp, state.gamma, towards.heading, share * towards.probability, *state[3:])
-        for (state, own), share in shares.items()
-        for towards in (sweep.towards if own is None else (Heading(heading=own),))
+        for (state, heading), share in shares.items()
+        for towards in (sweep.towards if heading is None else (Heading(heading=heading),))
     ]
     total = sum(case.probability for case in every)
     if not total > 0:
@@ -225,7 +225,7 @@ def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[st
         notes.append("loads were computed in float32 (precision: mixed)")
     peaks = [(tp, case.probability * hs**2) for case in cases for hs, tp in case.state.peaks]
     usual = of_spectra([tp for tp, _ in peaks], pace, [weight for _, weight in peaks])
-    low, cutoff = (found if given is None else given for given, found in zip((sweep.low, sweep.cutoff), usual))
+    low, cutoff = (default if limit is None else limit for limit, default in zip((sweep.low, sweep.cutoff), usual))
     if not cutoff > low:
         raise InputError(source, [Problem("cutoff", f"a number above low, {low:g} Hz", f"{cutoff:g}")])
     fatigue: dict[str, Any] = {"exponents": sweep.fatigue.exponents, "equivalent_frequency": sweep.fatigue.equivalent_frequency}

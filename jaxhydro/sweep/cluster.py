@@ -28,8 +28,8 @@ def client_of(scheduler: str) -> Any:
     try:
         return Client(scheduler, timeout=SCHEDULER_TIMEOUT)
     except (OSError, ValueError) as error:
-        said = " ".join(str(error).split())[:200] or type(error).__name__
-        raise InputError("--scheduler", [Problem("", "a scheduler that answers", f"{scheduler!r} ({said})")]) from None
+        message = " ".join(str(error).split())[:200] or type(error).__name__
+        raise InputError("--scheduler", [Problem("", "a scheduler that answers", f"{scheduler!r} ({message})")]) from None
 
 
 def workers_of(scheduler: str) -> int:
@@ -60,12 +60,12 @@ def simulate_on_cluster(folder: Path, batches: Sequence[Sequence[int]], schedule
     from distributed import as_completed
 
     with client:
-        place = str(folder.resolve())
-        futures = {client.submit(simulate_runs, place, list(batch), pure=False, retries=RETRIES): batch for batch in batches}
+        path = str(folder.resolve())
+        futures = {client.submit(simulate_runs, path, list(batch), pure=False, retries=RETRIES): batch for batch in batches}
         for future in as_completed(futures):
             if future.status == "finished":
                 yield future.result()
             else:
                 lost = future.exception()
-                yield fail_runs(place, futures[future], f"lost on the cluster ({type(lost).__name__}: {lost})"[:500])
+                yield fail_runs(path, futures[future], f"lost on the cluster ({type(lost).__name__}: {lost})"[:500])
             future.release()

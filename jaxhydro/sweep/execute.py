@@ -72,7 +72,7 @@ class PreparedSweep(NamedTuple):
     def about(self) -> dict[str, Any]:
         """First entries of sweep.json."""
         about: dict[str, Any] = {"sweep": self.source, "platform": Path(self.platform).stem}
-        notes = [one.text for one in sorted(self.remarks, key=lambda one: not one.warning)] + self.notes
+        notes = [remark.text for remark in sorted(self.remarks, key=lambda remark: not remark.warning)] + self.notes
         if (used := self.setup.calibrated) is None:
             return about | {"notes": notes}
         reference = {} if used.reference is None else {"sea_state_reference": used.reference._asdict()}
@@ -164,7 +164,7 @@ def opened(folder: Path, made: PreparedSweep, restart: bool = False) -> bool:
     Args:
         folder: Folder of the sweep.
         made: The sweep.
-        restart: Discard the runs that are there.
+        restart: Discard earlier runs.
 
     Raises:
         InputError: The store belongs to other inputs.
@@ -251,7 +251,7 @@ def run_sweep(
         out: Folder of the results.
         workers: Number of processes; None: what fits.
         batch: Runs at a time per process; None: what fits.
-        restart: Discard the runs that are there.
+        restart: Discard earlier runs.
         retry_failed: Repeat the runs that failed.
         scheduler: Address of a dask.distributed scheduler; None: this machine.
         progress: Called with the progress after each batch.
@@ -285,5 +285,7 @@ def _platform_text(asked: str) -> str:
     if not beside:
         return Path(asked).read_text(encoding="utf-8-sig")
     # a comment for each file, so that another file of the same name is another platform
-    contents = [f"# {one['file']}: sha256 {sha256(Path(one['file']).read_bytes()).hexdigest()}" for one in beside.values()]
+    contents = [
+        f"# {entry['file']}: sha256 {sha256(Path(entry['file']).read_bytes()).hexdigest()}" for entry in beside.values()
+    ]
     return "\n".join([json.dumps(data | beside, indent=1), *contents, ""])

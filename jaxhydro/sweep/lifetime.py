@@ -44,10 +44,10 @@ def weighted(probability: Float[np.ndarray, " case"], values: Runs) -> float:
         probability: Probability of each case, (case,).
         values: Values by case and seed, NaN where a run failed.
     """
-    there = np.isfinite(values)
-    count = there.sum(axis=1)
+    finite = np.isfinite(values)
+    count = finite.sum(axis=1)
     share = np.where(count > 0, probability, 0.0)
-    means = np.where(there, values, 0.0).sum(axis=1) / np.maximum(count, 1)
+    means = np.where(finite, values, 0.0).sum(axis=1) / np.maximum(count, 1)
     return float(share @ means / share.sum()) if share.sum() > 0 else math.nan
 
 
@@ -86,18 +86,18 @@ def lifetime(
         return Lifetime(none, none, none, np.full(len(exponents), none), none, none, none, none, none, none)
     seeds = [k for k in range(deviation.shape[1]) if np.isfinite(deviation[:, k]).any()]
     each = np.array([root(deviation[:, [k]], 2) for k in seeds])
-    seen, under = np.nanmax(most[:, seeds], axis=0), np.nanmin(least[:, seeds], axis=0)
+    highest, lowest = np.nanmax(most[:, seeds], axis=0), np.nanmin(least[:, seeds], axis=0)
     return Lifetime(
         weighted(probability, mean),
         root(deviation, 2),
         over_seeds(each),
         np.array([root(ranges[:, :, i], m) for i, m in enumerate(exponents)]),
-        float(seen.max()),
-        float(seen.mean()),
-        over_seeds(seen),
-        float(under.min()),
-        float(under.mean()),
-        over_seeds(under),
+        float(highest.max()),
+        float(highest.mean()),
+        over_seeds(highest),
+        float(lowest.min()),
+        float(lowest.mean()),
+        over_seeds(lowest),
     )
 
 
@@ -112,7 +112,7 @@ def exceedance(
         probability: Probability of each case, (case,).
         values: Values, NaN where a run failed, (case,).
     """
-    there = np.isfinite(values)
-    order = np.argsort(values[there])
-    share = probability[there][order] / probability[there].sum()
-    return values[there][order], np.cumsum(share[::-1])[::-1]
+    finite = np.isfinite(values)
+    order = np.argsort(values[finite])
+    share = probability[finite][order] / probability[finite].sum()
+    return values[finite][order], np.cumsum(share[::-1])[::-1]

@@ -38,7 +38,7 @@ class Worker:
 
     def ask(self, numbers: Sequence[int]) -> RunsDone:
         """Simulate and store runs; a killed process is replaced, and its runs are repeated."""
-        said = ""
+        message = ""
         for _ in range(TRIES):
             process = self.process
             assert process.stdin and process.stdout
@@ -49,11 +49,11 @@ class Worker:
                     return [(number, done) for number, done in json.loads(answer)]
             except BrokenPipeError:
                 pass
-            said = self._last_words()
+            message = self._last_words()
             if self.ended:
                 return []
             self.process = self._started()
-        return fail_runs(str(self.folder), numbers, f"the process that simulated it ended {TRIES} times ({said})")
+        return fail_runs(str(self.folder), numbers, f"the process that simulated it ended {TRIES} times ({message})")
 
     def _last_words(self) -> str:
         code = self.process.wait()
@@ -81,9 +81,9 @@ def simulate_locally(
         workers: Largest number of processes.
         devices: GPU of each process; empty: CPU.
     """
-    left: queue.SimpleQueue[Sequence[int]] = queue.SimpleQueue()
+    waiting: queue.SimpleQueue[Sequence[int]] = queue.SimpleQueue()
     for batch in batches:
-        left.put(batch)
+        waiting.put(batch)
     answers: queue.SimpleQueue[RunsDone | BaseException] = queue.SimpleQueue()
     every = [Worker(folder, devices[i] if devices else None) for i in range(min(workers, len(batches)))]
     stopped = threading.Event()
@@ -91,7 +91,7 @@ def simulate_locally(
     def serve(worker: Worker) -> None:
         try:
             while not stopped.is_set():
-                answers.put(worker.ask(left.get_nowait()))
+                answers.put(worker.ask(waiting.get_nowait()))
         except queue.Empty:
             pass
         except BaseException as error:

@@ -57,7 +57,7 @@ class State(NamedTuple):
     @property
     def peak_period(self) -> float:
         """Peak period (s) of the highest system, as `RequestedSea.of_systems` has it."""
-        return max(self.peaks, key=lambda one: one[0])[1]
+        return max(self.peaks, key=lambda peak: peak[0])[1]
 
     def systems(self, heading: float, spectrum: str, spreading: float | None) -> tuple[WaveSystem, ...]:
         """Wave systems of the sea state: the wind sea, and the swell if there is one.
@@ -67,20 +67,24 @@ class State(NamedTuple):
             spectrum: Spectrum of both systems, as `WaveSystem` has it.
             spreading: Exponent s (-) of a wind sea without its own; None: long-crested.
         """
-        own = spreading if self.spreading is None else self.spreading
-        sea = WaveSystem(self.hs, self.tp, self.gamma, heading, own, spectrum)
+        exponent = spreading if self.spreading is None else self.spreading
+        sea = WaveSystem(self.hs, self.tp, self.gamma, heading, exponent, spectrum)
         if self.swell_hs is None or self.swell_tp is None:
             return (sea,)
         towards = heading if self.swell_heading is None else self.swell_heading
         return sea, WaveSystem(self.swell_hs, self.swell_tp, self.swell_gamma, towards, self.swell_spreading, spectrum)
 
 
-def swell_problems(given: Mapping[str, Any]) -> Iterator[Problem]:
-    """What is wrong with the swell of a sea state, of which `given` has the values that are stated."""
-    there = [name for name in OF_SWELL if given.get(name) is not None]
+def swell_problems(values: Mapping[str, Any]) -> Iterator[Problem]:
+    """Mistakes in the swell of a sea state.
+
+    Args:
+        values: Values of the sea state that are stated, by name.
+    """
+    stated = [name for name in OF_SWELL if values.get(name) is not None]
     for name in OF_SWELL[:2]:
-        if there and name not in there:
-            yield Problem(name, f"a number > 0, for a swell with {there[0]}", "nothing")
+        if stated and name not in stated:
+            yield Problem(name, f"a number > 0, for a swell with {stated[0]}", "nothing")
 
 
 def named(state: State) -> str:
@@ -103,7 +107,7 @@ def runs_in_words(state: State, headings: Sequence[float], seeds: Sequence[int])
 
 
 def table_problems(rows: Sequence[Any], spectrum: str, order: int, headings: Sequence[float] | None) -> Iterator[Problem]:
-    """What is wrong with sea states in a sweep; `where` begins with the row's number in brackets.
+    """Mistakes in the sea states of a sweep; `where` begins with the row's number in brackets.
 
     Args:
         rows: Sea states of the table (`SeaState`).
@@ -111,17 +115,17 @@ def table_problems(rows: Sequence[Any], spectrum: str, order: int, headings: Seq
         order: 1 or 2.
         headings: Headings that the sweep states (deg); None: none.
     """
-    own = [row.heading is not None for row in rows]
+    has_heading = [row.heading is not None for row in rows]
     for i, row in enumerate(rows):
         if spectrum != "jonswap":
             for key in ("gamma", "swell_gamma"):
                 if getattr(row, key) is not None:
                     yield Problem(f"[{i}].{key}", "a JONSWAP spectrum with it", spectrum)
-        if own[i] and headings is not None:
+        if has_heading[i] and headings is not None:
             yield Problem(f"[{i}].heading", "none, since the sweep has headings for all sea states", shown(row.heading))
-        elif any(own) and not own[i]:
+        elif any(has_heading) and not has_heading[i]:
             yield Problem(f"[{i}].heading", "a heading, as others in the table have", "none")
-        towards = [row.heading] if own[i] else list(headings or (0.0,))
+        towards = [row.heading] if has_heading[i] else list(headings or (0.0,))
         turned = row.swell_heading is not None and any((row.swell_heading - heading) % 360 for heading in towards)
         if order == 2 and (row.spreading is not None or row.swell_spreading is not None or turned):
             key = next(name for name in ("spreading", "swell_spreading", "swell_heading") if getattr(row, name) is not None)

@@ -68,7 +68,7 @@ def lifetime_sensitivity(sweep: Sweep, labels: Sequence[str], dof: str = "surge"
     for label in labels:
         setup.model.about(label)
     column = DOFS.index(dof) if dof in DOFS else _no_motion(dof)
-    times, kept = jnp.asarray(setup.times), jnp.asarray(setup.times >= plan.start)
+    times, after_start = jnp.asarray(setup.times), jnp.asarray(setup.times >= plan.start)
     values = jnp.stack([jnp.asarray(setup.model.values[label], float) for label in labels])
     deviation = np.zeros((len(plan.cases), len(plan.seeds)))
     slopes = np.zeros((len(labels), *deviation.shape))
@@ -76,26 +76,26 @@ def lifetime_sensitivity(sweep: Sweep, labels: Sequence[str], dof: str = "surge"
         run = plan.run(number)
         sea = sea_of(setup, run)
         state = state_of(sea.components)
-        there = setup.model.in_sea(state)
-        start = State(equilibrium(there), jnp.zeros(6), there.settled(jnp.zeros(6)))
-        prepared, step, steps = prepared_for(there, sea, setup.times, setup.limit)
+        model_in_sea = setup.model.in_sea(state)
+        start = State(equilibrium(model_in_sea), jnp.zeros(6), model_in_sea.settled(jnp.zeros(6)))
+        prepared, step, steps = prepared_for(model_in_sea, sea, setup.times, setup.limit)
         how = (
             setup.model,
             prepared,
             start,
             jax.tree.map(jnp.asarray, state),
             times,
-            kept,
+            after_start,
             jnp.asarray(step),
             steps,
             tuple(labels),
             column,
         )
-        found, slope, reached = _with_slope(values, *how)
+        run_deviation, slope, reached = _with_slope(values, *how)
         if not float(reached) <= prepared.half:
             far = f"moves {float(reached):.3g} m along the waves in run {number}"
             raise ValueError(f"the platform {far}: too far for a derivative")
-        deviation[run.row, run.column], slopes[:, run.row, run.column] = float(found), np.asarray(slope)
+        deviation[run.row, run.column], slopes[:, run.row, run.column] = float(run_deviation), np.asarray(slope)
     probability = np.array([case.probability for case in plan.cases])[:, None] / len(plan.seeds)
     value = math.sqrt(float(np.sum(probability * deviation**2)))
     total = (probability * deviation * slopes).sum(axis=(1, 2)) / value
@@ -110,7 +110,7 @@ def _with_slope(
     start: State,
     state: SeaState,
     times: Float[Array, " t"],
-    kept: Float[Array, " t"],
+    after_start: Float[Array, " t"],
     step: Float[Array, ""],
     steps: int,
     labels: tuple[str, ...],
@@ -119,15 +119,15 @@ def _with_slope(
     """Standard deviation of a motion, its derivatives, and the largest distance (m) from the box's middle."""
 
     def deviation(values: Float[Array, " l"]):
-        here = model.with_values(dict(zip(labels, values))).in_sea(state)
-        position = integrate(here, sea, start, times[0], step, steps, "ab4", "forward").at(times)[0]
-        x, count = position[:, column], kept.sum()
-        mean = jnp.sum(x * kept) / count
-        found = jnp.sqrt(jnp.sum(kept * (x - mean) ** 2) / count)
-        return found, (found, jnp.abs(position[:, :2] @ sea.along - sea.middle).max())
+        model_in_sea = model.with_values(dict(zip(labels, values))).in_sea(state)
+        position = integrate(model_in_sea, sea, start, times[0], step, steps, "ab4", "forward").at(times)[0]
+        x, count = position[:, column], after_start.sum()
+        mean = jnp.sum(x * after_start) / count
+        value = jnp.sqrt(jnp.sum(after_start * (x - mean) ** 2) / count)
+        return value, (value, jnp.abs(position[:, :2] @ sea.along - sea.middle).max())
 
-    slope, (found, reached) = jax.jacfwd(deviation, has_aux=True)(values)
-    return found, slope, reached
+    slope, (value, reached) = jax.jacfwd(deviation, has_aux=True)(values)
+    return value, slope, reached
 
 
 def _no_motion(dof: str) -> int:

@@ -74,8 +74,8 @@ def locked_folder(folder: Path) -> Iterator[None]:
     try:
         lock.acquire(timeout=0)
     except Timeout:
-        found = f"{str(folder)!r}, which another sweep writes now"
-        raise InputError("--out", [Problem("", "a folder of its own", found)]) from None
+        actual = f"{str(folder)!r}, which another sweep writes now"
+        raise InputError("--out", [Problem("", "a folder of its own", actual)]) from None
     except (NotImplementedError, OSError):
         pass
     try:
@@ -121,22 +121,22 @@ def discard(folder: Path) -> None:
 
 def check_same(folder: Path, inputs: Inputs) -> None:
     """Raise InputError where the folder's store was made of other inputs or by another program."""
-    there = folder / INPUTS
+    inputs_folder = folder / INPUTS
     problems = []
     try:
         old = Inputs(
-            Plan.from_json((there / PLAN).read_text(encoding="utf-8")),
-            (there / PLATFORM).read_text(encoding="utf-8"),
-            (there / CALIBRATION).read_text(encoding="utf-8") if (there / CALIBRATION).is_file() else None,
+            Plan.from_json((inputs_folder / PLAN).read_text(encoding="utf-8")),
+            (inputs_folder / PLATFORM).read_text(encoding="utf-8"),
+            (inputs_folder / CALIBRATION).read_text(encoding="utf-8") if (inputs_folder / CALIBRATION).is_file() else None,
         )
     except (OSError, ValueError, TypeError, KeyError) as error:
-        found = f"{str(there)!r}, which cannot be read ({error})"
-        raise InputError("--out", [Problem("", "a folder with a sweep's inputs", found, RESTART_HINT)]) from None
+        actual = f"{str(inputs_folder)!r}, which cannot be read ({error})"
+        raise InputError("--out", [Problem("", "a folder with a sweep's inputs", actual, RESTART_HINT)]) from None
     for key, before, now in old.plan.differences(inputs.plan):
         problems.append(Problem(key, f"{before}, as in the runs that are there", now, RESTART_HINT))
-    for name, what in (("platform", "platform file"), ("calibration", "calibration")):
+    for name, noun in (("platform", "platform file"), ("calibration", "calibration")):
         if getattr(old, name) != getattr(inputs, name):
-            problems.append(Problem(name, f"the {what} of the runs that are there", "another", RESTART_HINT))
+            problems.append(Problem(name, f"the {noun} of the runs that are there", "another", RESTART_HINT))
     try:
         group = zarr.open_group(folder / RESULTS, mode="r", zarr_format=3, use_consolidated=False)
         made_by: Any = group.attrs.get("computed_with")
@@ -166,20 +166,20 @@ class Store:
         """Status of every run by number: TO_DO, DONE or FAILED."""
         return np.asarray(self.arrays["status"][:]).reshape(-1)
 
-    def write(self, run: Run, found: RunResults | str) -> bool:
+    def write(self, run: Run, outcome: RunResults | str) -> bool:
         """Write the results of a run, or the reason why it failed; whether it is done."""
-        at = (run.row, run.column)
-        if isinstance(found, str):
-            self.arrays["reason"][at] = found
-            self.arrays["status"][at] = FAILED
+        index = (run.row, run.column)
+        if isinstance(outcome, str):
+            self.arrays["reason"][index] = outcome
+            self.arrays["status"][index] = FAILED
             return False
-        if self.arrays["status"][at] == FAILED:
-            self.arrays["reason"][at] = ""
+        if self.arrays["status"][index] == FAILED:
+            self.arrays["reason"][index] = ""
         for name in RESULT_VARIABLES:
-            values = getattr(found, name)
+            values = getattr(outcome, name)
             if values is not None:
-                self.arrays[name][at] = values
-        self.arrays["status"][at] = DONE
+                self.arrays[name][index] = values
+        self.arrays["status"][index] = DONE
         return True
 
 
@@ -228,8 +228,8 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, 
         _coordinate(group, "band_limits", ("case", "channel", "band", "edge"), limits, "Hz")
         runs = (len(plan.cases), len(plan.seeds))
         flags: dict[str, Any] = {"flag_values": [TO_DO, DONE, FAILED], "flag_meanings": "to_do done failed"}
-        said: dict[str, Any] = {"long_name": "why a run failed"}
-        for name, dtype, fill, about in (("status", "u1", TO_DO, flags), ("reason", "string", "", said)):
+        reasons: dict[str, Any] = {"long_name": "why a run failed"}
+        for name, dtype, fill, about in (("status", "u1", TO_DO, flags), ("reason", "string", "", reasons)):
             group.create_array(
                 name,
                 shape=runs,

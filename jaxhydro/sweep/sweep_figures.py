@@ -36,13 +36,13 @@ def scatter_figure(
         label: Label of the colours.
         title: Title of the figure.
     """
-    states, of = np.unique(np.stack([hs, tp], axis=1), axis=0, return_inverse=True)
-    of = of.reshape(-1)
-    there = np.isfinite(deviation)
-    share = np.bincount(of, probability, len(states))
-    known = np.bincount(of, probability * there, len(states))
-    square = np.bincount(of, probability * np.where(there, deviation, 0.0) ** 2, len(states))
-    colour = np.sqrt(square / np.where(known > 0, known, np.nan))
+    states, state_index = np.unique(np.stack([hs, tp], axis=1), axis=0, return_inverse=True)
+    state_index = state_index.reshape(-1)
+    finite = np.isfinite(deviation)
+    share = np.bincount(state_index, probability, len(states))
+    known_share = np.bincount(state_index, probability * finite, len(states))
+    square = np.bincount(state_index, probability * np.where(finite, deviation, 0.0) ** 2, len(states))
+    colour = np.sqrt(square / np.where(known_share > 0, known_share, np.nan))
     figure, (ax,) = stack([2.3])
     size = np.clip(420 * share / share.max(), 18, None) * min(1.0, 30 / len(states))
     solid = np.isfinite(colour)
@@ -60,13 +60,13 @@ def scatter_figure(
         clip_on=False,
     )
     if not solid.all():
-        at = states[~solid]
-        ax.scatter(at[:, 1], at[:, 0], s=size[~solid], fc="none", ec=SIMULATED, lw=0.9, zorder=3, clip_on=False)
+        hollow = states[~solid]
+        ax.scatter(hollow[:, 1], hollow[:, 0], s=size[~solid], fc="none", ec=SIMULATED, lw=0.9, zorder=3, clip_on=False)
     if len(states) <= MAX_LABELLED_STATES:
-        for (height, period), one, area in zip(states, share, size):
-            said = "100" if one > 0.995 else f"{100 * one:.2g}"
+        for (height, period), fraction, area in zip(states, share, size):
+            percent = "100" if fraction > 0.995 else f"{100 * fraction:.2g}"
             ax.annotate(
-                f"{said} %",
+                f"{percent} %",
                 (period, height),
                 textcoords="offset points",
                 xytext=(0, np.sqrt(area / np.pi) + 2),

@@ -41,7 +41,7 @@ def load_sweep(path: str | Path) -> Sweep:
         changed["scatter"] = read_scatter(path.parent / sweep.scatter, f"{path}: scatter")
         if sweep.spectrum != "jonswap" and any(state.gamma is not None for state in changed["scatter"]):
             raise InputError(str(path), [Problem("spectrum", "jonswap, for a table with gamma", sweep.spectrum)])
-        if problems := [in_row(one) for one in sweep.faults_of_states(changed["scatter"])]:
+        if problems := [in_row(problem) for problem in sweep.faults_of_states(changed["scatter"])]:
             raise InputError(f"{path}: scatter: {path.parent / sweep.scatter}", problems)
     if (near := path.parent / sweep.platform).is_file():
         changed["platform"] = str(near)
@@ -74,8 +74,8 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
     except UnicodeDecodeError:
         raise InputError(asked, [Problem("", "a CSV file in UTF-8", f"{str(path)!r}, which is in another encoding")]) from None
     except (OSError, ValueError) as error:
-        said = str(getattr(error, "strerror", None) or error)
-        raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, which cannot be read ({said})")]) from None
+        reason = str(getattr(error, "strerror", None) or error)
+        raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, which cannot be read ({reason})")]) from None
     # as blank lines, so that lines keep their numbers: comments, and what spreadsheets say of the delimiter
     lines = ["" if re.match(r"\s*#|\ufeff?sep=.\s*$", line, re.IGNORECASE) else line for line in text.splitlines()]
     head = next(filter(str.strip, lines), "")
@@ -92,10 +92,10 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
     problems = []
     for head, name in zip(heads, names):
         if name not in COLUMNS or names.count(name) > 1:
-            found = shown(head) if name not in COLUMNS else f"{name} twice"
+            actual = shown(head) if name not in COLUMNS else f"{name} twice"
             units = "Hs in m, Tp in s" if re.match(r"(swell_)?(hs|tp)\b", name) else ""
             hint = units or suggest(name, COLUMNS)
-            problems.append(Problem(where, f"columns among {', '.join(COLUMNS)}", found, hint))
+            problems.append(Problem(where, f"columns among {', '.join(COLUMNS)}", actual, hint))
     missing = [name for name in COLUMNS[:3] if name not in names]
     if missing and not problems:
         problems.append(Problem(where, f"a column {missing[0]}", ", ".join(heads)))
@@ -119,7 +119,7 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
             if not least <= value <= most:
                 problems.append(Problem(f"line {number}, column {head}", expected, shown(cell.strip())))
             values[name] = value
-        problems += [replace(one, where=f"line {number}, column {one.where}") for one in swell_problems(values)]
+        problems += [replace(problem, where=f"line {number}, column {problem.where}") for problem in swell_problems(values)]
         if not problems:
             states.append(SeaState(**values))
     if problems:

@@ -28,8 +28,8 @@ def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
     It is the variance from `low` to `cutoff`, on the frequencies of the seas, over Hs²/16.
     """
     step = 2 * np.pi / repeat_period(plan.duration)
-    found = {state: float(density.sum()) * step / (state.height**2 / 16) for state, _, density in _spectra(plan)}
-    return np.array([found[case.state] for case in plan.cases])
+    shares = {state: float(density.sum()) * step / (state.height**2 / 16) for state, _, density in _spectra(plan)}
+    return np.array([shares[case.state] for case in plan.cases])
 
 
 def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float[np.ndarray, " w"]]]:
@@ -39,17 +39,17 @@ def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float
     omega = jnp.asarray(2 * np.pi / period * np.arange(first, last + 1))
     states = list(dict.fromkeys(case.state for case in plan.cases))
     for i in range(0, len(states), STATES_IN_MEMORY):
-        some = states[i : i + STATES_IN_MEMORY]
-        hs, tp = (jnp.array([state[k] for state in some])[:, None] for k in (0, 1))
+        chunk = states[i : i + STATES_IN_MEMORY]
+        hs, tp = (jnp.array([state[k] for state in chunk])[:, None] for k in (0, 1))
         if plan.spectrum == "jonswap":
-            asked = jnp.array([[np.nan if state[2] is None else state[2]] for state in some])
+            asked = jnp.array([[np.nan if state[2] is None else state[2]] for state in chunk])
             density = jonswap(omega, hs, tp, jnp.where(jnp.isnan(asked), peak_enhancement(hs, tp), asked))
         else:
             density = pierson_moskowitz(omega, hs, tp)
         shape = plan.spectrum.replace("_", "-")
-        for state, sea in zip(some, np.asarray(density)):
+        for state, sea in zip(chunk, np.asarray(density)):
             swell = state.systems(0.0, shape, None)[1:]
-            yield state, np.asarray(omega), sum((np.asarray(one.density(omega)) for one in swell), sea)
+            yield state, np.asarray(omega), sum((np.asarray(system.density(omega)) for system in swell), sea)
 
 
 def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Remark]:
@@ -57,45 +57,50 @@ def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Rem
     ranges = table_ranges(model)
     if not ranges:
         return
-    shares: dict[TableRange, dict[State, float]] = {one: {} for one in ranges}
+    shares: dict[TableRange, dict[State, float]] = {table: {} for table in ranges}
     for state, omega, density in _spectra(plan):
         if state not in failing:
-            for one in ranges:
-                shares[one][state] = one.share_outside(omega, density)
-    for one, found in shares.items():
-        said = {state: remark for state, share in found.items() if (remark := one.remark(share, named(state))) is not None}
-        if said:
-            state = max(said, key=found.__getitem__)
-            others = f" (so or less {_in(len(said), len(found))})" if len(found) > 1 else ""
-            yield said[state]._replace(text=said[state].text + others)
+            for table in ranges:
+                shares[table][state] = table.share_outside(omega, density)
+    for table, by_state in shares.items():
+        remarks = {
+            state: remark for state, share in by_state.items() if (remark := table.remark(share, named(state))) is not None
+        }
+        if remarks:
+            state = max(remarks, key=by_state.__getitem__)
+            others = f" (so or less {_in(len(remarks), len(by_state))})" if len(by_state) > 1 else ""
+            yield remarks[state]._replace(text=remarks[state].text + others)
 
 
 def near_limits(plan: Plan, environment: Environment, failing: dict[State, str]) -> Iterator[Remark]:
-    """Remarks on sea states near the limits of wave theory, each for the steepest sea state that it is about."""
+    """Remarks on sea states near the limits of wave theory.
+
+    Each is for the steepest sea state that it is about.
+    """
     states = [state for state in dict.fromkeys(case.state for case in plan.cases) if state not in failing]
     states.sort(key=lambda state: state.height / state.peak_period**2, reverse=True)
     for limit in LIMITS:
-        said = {
+        remarks = {
             state: remark
             for state in states
             if (remark := limit(state.height, period := state.peak_period, environment, plan.order, plan.duration / period))
         }
-        if said:
-            state, remark = next(iter(said.items()))
-            others = f" (so {_in(len(said), len(states))})" if len(states) > 1 else ""
+        if remarks:
+            state, remark = next(iter(remarks.items()))
+            others = f" (so {_in(len(remarks), len(states))})" if len(states) > 1 else ""
             yield remark._replace(text=f"{named(state)}: {remark.text}{others}")
 
 
 def impossible(setup: Setup) -> dict[State, str]:
     """Reasons why the runs of some sea states will fail: breaking waves, or hardly any energy in the band."""
-    found: dict[State, str] = {}
+    reasons: dict[State, str] = {}
     for state, case in {case.state: case for case in setup.plan.cases}.items():
         stop_if_asked()
         try:
             sea_of(setup, Run(0, 0, 0, case, setup.plan.seeds[0]))
         except Exception as error:  # whatever it is, it is this sea state's
-            found[state] = failure_reason(error)
-    return found
+            reasons[state] = failure_reason(error)
+    return reasons
 
 
 def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: dict[State, str]) -> Iterator[str]:
@@ -136,7 +141,7 @@ def _of_band(seas: dict[State, float], total: int, plan: Plan) -> Iterator[str]:
 def _of_height(seas: dict[State, float], total: int, plan: Plan, model: Model) -> Iterator[str]:
     gravity = float(model.environment.gravity)
     usual = {state: usual_cutoff(state.height * share**0.5, gravity) for state, share in seas.items()}
-    if plan.order == 2 and (high := {state: one for state, one in usual.items() if one < plan.cutoff}):
+    if plan.order == 2 and (high := {state: cutoff for state, cutoff in usual.items() if cutoff < plan.cutoff}):
         state = min(high, key=high.__getitem__)
         yield (
             f"second order is usually cut off at sqrt(2 g / Hs) (Stansberg): {_in(len(high), total)} below "
@@ -145,5 +150,5 @@ def _of_height(seas: dict[State, float], total: int, plan: Plan, model: Model) -
         )
 
 
-def _in(some: int, total: int) -> str:
-    return "in the only sea state" if total == 1 else f"in {some} of {total} sea states"
+def _in(count: int, total: int) -> str:
+    return "in the only sea state" if total == 1 else f"in {count} of {total} sea states"

@@ -128,10 +128,10 @@ Seeds = Annotated[Annotated[Number1, Tag("one")] | Annotated[Many, Tag("more")],
 
 def _some_without_share(key: str, rows: tuple[Any, ...]) -> Iterator[Problem]:
     """Sea states or headings of a list without a probability, where others have one."""
-    given = [isinstance(row, Schema) and "probability" in row.model_fields_set for row in rows]
-    if any(given):
-        for i, there in enumerate(given):
-            if not there:
+    stated = [isinstance(row, Schema) and "probability" in row.model_fields_set for row in rows]
+    if any(stated):
+        for i, has_probability in enumerate(stated):
+            if not has_probability:
                 yield Problem(f"{key}[{i}]", "a probability, as others in the list have", "none")
 
 
@@ -179,15 +179,15 @@ class Sweep(Consistent):
                 limits = f"a number from {self.duration / MAX_SAMPLES:g} to {self.duration:g} s"
                 yield Problem(key, f"{limits}, for a duration of {self.duration:g} s", f"{value:g}")
                 return
-        left = (self.duration - self.start) / self.time_step
-        if left < MIN_SAMPLES:
+        samples = (self.duration - self.start) / self.time_step
+        if samples < MIN_SAMPLES:
             expected = f"{MIN_SAMPLES} samples or more after the transient of {self.start:g} s"
-            yield Problem("duration", expected, f"{left:.0f} of them {self.time_step:g} s apart")
+            yield Problem("duration", expected, f"{samples:.0f} of them {self.time_step:g} s apart")
         if not isinstance(self.scatter, str | Grid):
             for problem in self.faults_of_states(self.scatter):
                 yield replace(problem, where=f"scatter{problem.where}")
-        turns = [one.heading % 360 for one in self.towards]
-        if twice := [one for i, one in enumerate(turns) if one in turns[:i]]:
+        turns = [towards.heading % 360 for towards in self.towards]
+        if twice := [turn for i, turn in enumerate(turns) if turn in turns[:i]]:
             yield Problem("headings", "each one once", f"{twice[0]:g} deg twice")
         for key in ("scatter", "headings"):
             if isinstance(rows := getattr(self, key), tuple):
@@ -199,14 +199,14 @@ class Sweep(Consistent):
                 yield Problem(key, "each one once", f"{twice!r} twice")
 
     def faults_of_states(self, states: tuple[SeaState, ...]) -> Iterator[Problem]:
-        """What is wrong with the sea states of this sweep; `where` begins with their number in brackets."""
-        headings = [one.heading for one in self.towards] if "headings" in self.model_fields_set else None
+        """Mistakes in the sea states of this sweep; `where` begins with their number in brackets."""
+        headings = [towards.heading for towards in self.towards] if "headings" in self.model_fields_set else None
         yield from table_problems(states, self.spectrum, self.order, headings)
 
     @property
     def towards(self) -> tuple[Heading, ...]:
         """Headings with their probabilities."""
-        return tuple(one if isinstance(one, Heading) else Heading(heading=float(one)) for one in self.headings)
+        return tuple(item if isinstance(item, Heading) else Heading(heading=float(item)) for item in self.headings)
 
     @property
     def start(self) -> float:

@@ -19,16 +19,16 @@ SINGLE_THREAD_FLAG = "--xla_cpu_multi_thread_eigen=false"
 
 def environment(device: str | None = None) -> dict[str, str]:
     """Environment variables of a worker: one thread of arithmetic, on the GPU `device` if named."""
-    found = dict(os.environ)
-    found["NPROC"] = "1"  # threads of XLA's pool
-    if SINGLE_THREAD_FLAG not in (flags := found.get("XLA_FLAGS", "")):  # once: programs are kept by their flags
-        found["XLA_FLAGS"] = f"{flags} {SINGLE_THREAD_FLAG}".strip()
+    variables = dict(os.environ)
+    variables["NPROC"] = "1"  # threads of XLA's pool
+    if SINGLE_THREAD_FLAG not in (flags := variables.get("XLA_FLAGS", "")):  # once: programs are kept by their flags
+        variables["XLA_FLAGS"] = f"{flags} {SINGLE_THREAD_FLAG}".strip()
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        found[name] = "1"
-    found.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # of GPU memory, which the processes share
+        variables[name] = "1"
+    variables.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # of GPU memory, which the processes share
     if device is not None:
-        found["CUDA_VISIBLE_DEVICES"] = device
-    return found
+        variables["CUDA_VISIBLE_DEVICES"] = device
+    return variables
 
 
 def simulate_runs(folder: str, numbers: Sequence[int]) -> RunsDone:
@@ -42,7 +42,7 @@ def simulate_runs(folder: str, numbers: Sequence[int]) -> RunsDone:
     store, setup = Store(Path(folder)), setup_in(Path(folder) / INPUTS)
     runs = [setup.plan.run(number) for number in numbers]
     if jax.default_backend() != "cpu":
-        return [(run.number, store.write(run, found)) for run, found in zip(runs, run_outcomes(setup, runs))]
+        return [(run.number, store.write(run, outcome)) for run, outcome in zip(runs, run_outcomes(setup, runs))]
     return [(run.number, store.write(run, run_outcome(setup, run))) for run in runs]
 
 

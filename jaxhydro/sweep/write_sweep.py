@@ -31,26 +31,26 @@ def results_of(data: xr.Dataset, about: dict[str, Any]) -> SweepResults:
         data: Results of the sweep.
         about: Its first entries: `sweep`, `platform`, `notes`, `calibration`.
     """
-    status, found = data.status.values, data.statistics.load()
+    status, statistics = data.status.values, data.statistics.load()
     probability, exponents = data.probability.values, data.exponent.values
     names = [str(name) for name in data.statistic.values]
     lifetimes = {}
     for channel, unit in zip(map(str, data.channel.values), map(str, data.unit.values)):
-        values = found.sel(channel=channel).values
+        values = statistics.sel(channel=channel).values
         mean, deviation, least, most = (
             values[..., names.index(name)] for name in ("mean", "standard_deviation", "minimum", "maximum")
         )
         ranges = data.ranges.sel(channel=channel).values
-        one = lifetime(probability, mean, deviation, least, most, ranges, exponents)
+        channel_lifetime = lifetime(probability, mean, deviation, least, most, ranges, exponents)
         lifetimes[channel] = LifetimeStatistics(
             unit=unit,
-            **{name: finite_or_null(value) for name, value in one._asdict().items() if name != "ranges"},
-            damage_equivalent_range={f"{m:g}": finite_or_null(r) for m, r in zip(exponents, one.ranges)},
+            **{name: finite_or_null(value) for name, value in channel_lifetime._asdict().items() if name != "ranges"},
+            damage_equivalent_range={f"{m:g}": finite_or_null(r) for m, r in zip(exponents, channel_lifetime.ranges)},
         )
     headings: dict[float, float] = {}
     for heading, share in zip(data.heading.values.tolist(), probability.tolist()):
         headings[heading] = headings.get(heading, 0.0) + share
-    done, failed = (int((status == one).sum()) for one in (DONE, FAILED))
+    done, failed = (int((status == flag).sum()) for flag in (DONE, FAILED))
     return SweepResults(
         **about,
         source=f"jaxhydro {jaxhydro.__version__}",
@@ -73,10 +73,10 @@ def _failures(data: xr.Dataset) -> list[Failure]:
     for row, column in zip(*np.nonzero(data.status.values == FAILED)):
         key = states[row], str(reasons[row, column])
         alike.setdefault(key, []).append((float(headings[row]), int(seeds[column])))
-    found = []
+    failures = []
     for (state, reason), runs in alike.items():
         towards, drawn = zip(*runs)
-        found.append(
+        failures.append(
             Failure(
                 hs=state.hs,
                 tp=state.tp,
@@ -88,7 +88,7 @@ def _failures(data: xr.Dataset) -> list[Failure]:
                 reason=reason,
             )
         )
-    return found
+    return failures
 
 
 def _states(data: xr.Dataset) -> list[State]:
@@ -96,43 +96,43 @@ def _states(data: xr.Dataset) -> list[State]:
     names = [name for name in State._fields if name in data]
     rows = zip(*(data[name].values.tolist() for name in names))
     stated: list[dict[str, Any]] = [{n: None if math.isnan(value) else value for n, value in zip(names, row)} for row in rows]
-    return [State(**one) for one in stated]
+    return [State(**entry) for entry in stated]
 
 
-def write_outputs(folder: Path, data: xr.Dataset, found: SweepResults) -> None:
+def write_outputs(folder: Path, data: xr.Dataset, results: SweepResults) -> None:
     """Write the output files, all or none.
 
     Args:
         folder: Folder of the sweep.
         data: Results of the sweep.
-        found: Content of sweep.json.
+        results: Content of sweep.json.
     """
     with staged(folder) as temporary:
-        listed = found.model_copy(update={"failures": found.failures[:MAX_LISTED_FAILURES]})
+        listed = results.model_copy(update={"failures": results.failures[:MAX_LISTED_FAILURES]})
         listed.write(temporary / "sweep.json")
         with (temporary / "lifetime.csv").open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows(_table(found))
-        if found.runs.done:
+            csv.writer(file).writerows(_table(results))
+        if results.runs.done:
             with style():
-                _figures(temporary, data, found)
+                _figures(temporary, data, results)
 
 
-def _table(found: SweepResults) -> list[list[str]]:
+def _table(results: SweepResults) -> list[list[str]]:
     fields = [name for name in LifetimeStatistics.model_fields if name not in ("unit", "damage_equivalent_range")]
-    exponents = next(iter(found.lifetime.values())).damage_equivalent_range
+    exponents = next(iter(results.lifetime.values())).damage_equivalent_range
     rows = [["channel", "unit", *fields, *(f"damage_equivalent_range_m{m}" for m in exponents)]]
-    for channel, one in found.lifetime.items():
-        values = [getattr(one, name) for name in fields] + list(one.damage_equivalent_range.values())
-        rows.append([channel, one.unit, *("" if value is None else f"{value:.6g}" for value in values)])
+    for channel, entry in results.lifetime.items():
+        values = [getattr(entry, name) for name in fields] + list(entry.damage_equivalent_range.values())
+        rows.append([channel, entry.unit, *("" if value is None else f"{value:.6g}" for value in values)])
     return rows
 
 
 def _figures(folder: Path, data: xr.Dataset, results: SweepResults) -> None:
     names = [str(name) for name in data.statistic.values]
-    found, probability, lifetimes, platform = data.statistics, data.probability.values, results.lifetime, results.platform
-    moving = [name for name, one in lifetimes.items() if name in DOFS and (one.standard_deviation or 0.0) > MIN_DEVIATION]
+    statistics, probability, lifetimes, platform = data.statistics, data.probability.values, results.lifetime, results.platform
+    moving = [name for name, entry in lifetimes.items() if name in DOFS and (entry.standard_deviation or 0.0) > MIN_DEVIATION]
     first = "surge" if "surge" in moving else next(iter(moving), "wave")
-    square = found.sel(channel=first).values[..., names.index("standard_deviation")] ** 2
+    square = statistics.sel(channel=first).values[..., names.index("standard_deviation")] ** 2
     count = np.isfinite(square).sum(axis=1)
     deviation = np.sqrt(np.nansum(square, axis=1) / np.where(count > 0, count, np.nan))
     label = f"{first.capitalize()}, standard deviation ({lifetimes[first].unit})"
@@ -140,7 +140,8 @@ def _figures(folder: Path, data: xr.Dataset, results: SweepResults) -> None:
     save(figure, folder / "scatter.png")
     panels = [name for name in PANELS if name in moving] or moving[:3] or ["wave"]
     minima, maxima = (
-        [found.sel(channel=name).values[..., names.index(one)] for name in panels] for one in ("minimum", "maximum")
+        [statistics.sel(channel=name).values[..., names.index(statistic)] for name in panels]
+        for statistic in ("minimum", "maximum")
     )
     labels = [f"{name} ({lifetimes[name].unit})" for name in panels]
     duration = float(data.attrs["duration"]) - float(data.attrs["start"])

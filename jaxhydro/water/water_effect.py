@@ -9,7 +9,7 @@ from jaxhydro.waves.sea import AbstractSea
 
 
 class AbstractWaterEffect(AbstractEffect):
-    """Base class of what changes the sea that the platform meets.
+    """Base class of effects that change the sea that the platform meets.
 
     Attributes:
         comes_last: Whether the effect changes the sea together with all that other effects make of it.

@@ -33,12 +33,12 @@ class ReflectedSea(AbstractSea):
     def _mirror(self, points: Float[Array, "2 n"]) -> Float[Array, "2 n"]:
         return points - 2 * self.along[:, None] * (self.along @ points - self.origin)
 
-    def _met(self, here: Array, back: Array, then: Array) -> Array:
-        return here + self.coefficient * (back - self.seen * then)
+    def _met(self, incident: Array, reflected: Array, delayed: Array) -> Array:
+        return incident + self.coefficient * (reflected - self.seen * delayed)
 
-    def _level(self, of: Any, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
-        here, then = (of(now, points) for now in (time, time - self.delay))
-        return None if here is None else self._met(here, of(time - self.delay, self._mirror(points)), then)
+    def _level(self, elevation: Any, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
+        incident, then = (elevation(now, points) for now in (time, time - self.delay))
+        return None if incident is None else self._met(incident, elevation(time - self.delay, self._mirror(points)), then)
 
     def flow(
         self,
@@ -48,25 +48,25 @@ class ReflectedSea(AbstractSea):
         gradient: bool = False,
     ) -> Flow | None:
         mirrored = jnp.concatenate([self._mirror(points[:2]), points[2:]])
-        here, then = (self.sea.flow(now, points, cylinders, gradient) for now in (time, time - self.delay))
+        incident, then = (self.sea.flow(now, points, cylinders, gradient) for now in (time, time - self.delay))
         back = self.sea.flow(time - self.delay, mirrored, cylinders, gradient)
-        if here is None or back is None:
-            return here
+        if incident is None or back is None:
+            return incident
         normal = jnp.concatenate([self.along, jnp.zeros(1)])
-        normal = normal if here.axes is None else here.axes.T @ normal
+        normal = normal if incident.axes is None else incident.axes.T @ normal
 
         def both(name: str) -> Any:
-            one, other, late = getattr(here, name), getattr(back, name), getattr(then, name)
-            return None if one is None else self._met(one, other - 2 * normal[:, None] * (normal @ other), late)
+            direct, reflected, late = getattr(incident, name), getattr(back, name), getattr(then, name)
+            return None if direct is None else self._met(direct, reflected - 2 * normal[:, None] * (normal @ reflected), late)
 
         velocity, acceleration, diffracted, tuned = map(both, ("velocity", "acceleration", "diffracted", "tuned"))
-        pressure = self._met(here.pressure, back.pressure, then.pressure)
+        pressure = self._met(incident.pressure, back.pressure, then.pressure)
         slopes = None
         if gradient:
             mirror = jnp.eye(len(normal)) - 2 * jnp.outer(normal, normal)
             turned = jnp.einsum("ia,abn,jb->ijn", mirror, back.gradient, mirror)
-            slopes = self._met(here.gradient, turned, then.gradient)
-        return Flow(velocity, acceleration, pressure, diffracted, tuned, here.axes, slopes)
+            slopes = self._met(incident.gradient, turned, then.gradient)
+        return Flow(velocity, acceleration, pressure, diffracted, tuned, incident.axes, slopes)
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return self._level(self.sea.elevation, time, points)
@@ -77,8 +77,8 @@ class ReflectedSea(AbstractSea):
     def drift(self, time: Float[Array, ""]) -> Float[Array, " d"] | None:
         return self.sea.drift(time)
 
-    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
-        return self.sea.excitation(time, place)
+    def excitation(self, time: Float[Array, ""], position: Float[Array, "2"]) -> Float[Array, "6"] | None:
+        return self.sea.excitation(time, position)
 
     def direction(self) -> Float[Array, "2"]:
         return self.along
@@ -90,18 +90,21 @@ class ReflectedSea(AbstractSea):
 class WaveReflection(AbstractWaterEffect):
     """Reflection of the waves by a beach.
 
-    eta(x, t) = eta_g(x, t) + r (eta_g(-x, t - T) - s eta_g(x, t - T)): the sea of the wave record, r times its mirror image
-    about the origin, T later, and less what of that the record has already.
+    eta(x, t) = eta_g(x, t) + r (eta_g(-x, t - T) - s eta_g(x, t - T)), with eta_g the sea of the wave record. Its mirror
+    image about the origin, T later, is added r times. The part of that which the record has already is subtracted.
 
     x is along the waves, T from the platform to the beach and back. s is 0 where the record is of incident waves alone, as a
-    row of gauges separates them, and 1 where it is of one gauge at the origin, which saw what came back, too: then the
-    elevation there is as measured, and the flow is not; of r^2 is neglected. One real r for all frequencies: beaches reflect
-    long waves more, and their r is measured by component (Goda and Suzuki 1976, Estimation of incident and reflected waves
-    in random wave experiments, Coastal Engineering Proceedings 15). With dispersion the delay is the group velocity's at one
-    period and the phase is not the beach's: r of either sign and a search over T stand for that. Bound waves are sent back
-    as they are, where a beach sets them free: of order r times second order. In a prepared sea T is between the steps of its
-    clock by interpolation, nothing comes back before T, and what comes back costs little. The squared envelope stays that of
-    the incident waves, and so does a computed excitation.
+    row of gauges separates them. It is 1 where the record is of one gauge at the origin, which measured the reflected waves,
+    too. Then the elevation there is as measured, and the flow is not. Terms of r^2 are neglected.
+
+    One real r stands for all frequencies. Beaches reflect long waves more; their r is measured by component (Goda and Suzuki
+    1976, Estimation of incident and reflected waves in random wave experiments, Coastal Engineering Proceedings 15). With
+    dispersion the delay is the group velocity's at one period and the phase is not the beach's: r of either sign and a
+    search over T stand for that. Bound waves are sent back as they are, where a beach sets them free: of order r times
+    second order.
+
+    In a prepared sea T is between the steps of its clock by interpolation. Nothing comes back before T, and the reflected
+    waves cost little. The squared envelope stays that of the incident waves, and so does a computed excitation.
 
     Labels are `wave_reflection.coefficient` (r; -), `wave_reflection.delay` (T; s) and `wave_reflection.seen` (s; -).
     """

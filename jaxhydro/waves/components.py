@@ -36,8 +36,8 @@ class Components(eqx.Module):
         """Number, frequencies, height and headings; shapes where the numbers are not computed yet."""
         from jaxhydro.display.summaries import are_numbers, components_summary
 
-        known = are_numbers(self) and self.amplitude.ndim == 1
-        return f"Components: {components_summary(self)}" if known else eqx.Module.__repr__(self)
+        computed = are_numbers(self) and self.amplitude.ndim == 1
+        return f"Components: {components_summary(self)}" if computed else eqx.Module.__repr__(self)
 
     @property
     def harmonics(self) -> tuple[int, int]:
@@ -92,8 +92,8 @@ def components(
     """
     amplitude, omega = jnp.asarray(amplitude, float), jnp.asarray(omega, float)
     k = wavenumber(omega, jnp.asarray(environment.depth), jnp.asarray(environment.gravity))
-    one = jnp.ones_like(omega)
-    return Components(amplitude, omega, k, heading * one, phase * one, first)
+    ones = jnp.ones_like(omega)
+    return Components(amplitude, omega, k, heading * ones, phase * ones, first)
 
 
 class PlaneWaves(eqx.Module):

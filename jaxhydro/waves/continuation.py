@@ -46,10 +46,10 @@ def continued(record: Float[np.ndarray, " t"], step: float, low: float, cutoff: 
         return jnp.fft.irfft(inside * jnp.fft.rfft(whole), length)[count:]
 
     none, nothing = jnp.zeros(length - count), jnp.zeros(count)
-    found = cg(
+    extension = cg(
         lambda p: (1 + RIDGE) * p - passed(p, nothing), passed(none, jnp.asarray(record)), tol=ACCURACY, maxiter=MAX_ITERATIONS
     )[0]
-    whole = np.concatenate([record, np.asarray(found)])
+    whole = np.concatenate([record, np.asarray(extension)])
     near = min(int(np.ceil(END_LENGTH / (cutoff * step))), count // 2)
     ends = np.r_[:near, count - near : count]
     missed = [float(np.linalg.norm((x - _band_passed(x, step, low, cutoff))[ends])) for x in (record, whole)]

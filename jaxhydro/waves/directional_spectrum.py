@@ -1,7 +1,8 @@
-"""Directional spectra: seas of several systems, each with its heading and spreading, and tables over direction.
+"""Directional spectra: seas of several wave systems, and tables over direction.
 
-A directional spectrum is E(omega, heading) = S(omega) D(heading; omega). A sea is drawn from it with one direction per
-frequency component. So its variance at every frequency is that of S, and it is the same at every place.
+Each system has its heading and spreading. A directional spectrum is E(omega, heading) = S(omega) D(heading; omega). A sea is
+drawn from it with one direction per frequency component. So its variance at every frequency is that of S, and it is the same
+at every point.
 """
 
 import abc
@@ -62,7 +63,7 @@ class WaveSystem:
     spectrum: str = "jonswap"
 
     def __post_init__(self) -> None:
-        """Check what no spectrum checks.
+        """Check the shape of the spectrum and the exponent of the spreading.
 
         Raises:
             UnknownName: Another spectrum.
@@ -100,28 +101,28 @@ class SystemsSpectrum(AbstractDirectionalSpectrum):
     systems: tuple[WaveSystem, ...]
 
     def density(self, omega: Float[Array, " w"]) -> Float[Array, " w"]:
-        found = self.systems[0].density(omega)
-        for one in self.systems[1:]:
-            found = found + one.density(omega)
-        return found
+        total = self.systems[0].density(omega)
+        for system in self.systems[1:]:
+            total = total + system.density(omega)
+        return total
 
     @property
     def long_crested(self) -> bool:
-        return all(one.spreading is None and one.heading == self.systems[0].heading for one in self.systems)
+        return all(system.spreading is None and system.heading == self.systems[0].heading for system in self.systems)
 
     def headings(self, omega: Float[np.ndarray, " w"], share: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
-        density = np.stack([np.asarray(one.density(jnp.asarray(omega))) for one in self.systems])
+        density = np.stack([np.asarray(system.density(jnp.asarray(omega))) for system in self.systems])
         total = density.sum(axis=0)
         total = np.where(total > 0, total, 1.0)
-        found, below = np.full(np.shape(omega), math.radians(self.systems[0].heading)), np.zeros(np.shape(omega))
-        for one, own in zip(self.systems, density / total):
-            mine = (share >= below) & (own > 0)
-            heading = np.full(np.shape(omega), math.radians(one.heading))
-            if one.spreading is not None:
-                inside = np.clip((share - below) / np.where(own > 0, own, 1.0), 0.0, 1.0)
-                heading = heading + spread_angle(one.spreading, inside)
-            found, below = np.where(mine, heading, found), below + own
-        return found
+        headings, below = np.full(np.shape(omega), math.radians(self.systems[0].heading)), np.zeros(np.shape(omega))
+        for system, fraction in zip(self.systems, density / total):
+            mine = (share >= below) & (fraction > 0)
+            heading = np.full(np.shape(omega), math.radians(system.heading))
+            if system.spreading is not None:
+                inside = np.clip((share - below) / np.where(fraction > 0, fraction, 1.0), 0.0, 1.0)
+                heading = heading + spread_angle(system.spreading, inside)
+            headings, below = np.where(mine, heading, headings), below + fraction
+        return headings
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,13 +155,13 @@ class TabulatedDirections(AbstractDirectionalSpectrum):
 
     def headings(self, omega: Float[np.ndarray, " w"], share: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
         edges = np.r_[self.heading - 0.5 * self.bin_width, self.heading[-1] + 0.5 * self.bin_width]
-        found = np.empty(np.shape(omega))
+        headings = np.empty(np.shape(omega))
         for i, (w, part) in enumerate(zip(np.asarray(omega), share)):
             energy = np.array([np.interp(w, self.omega, column, 0.0, 0.0) for column in self.values.T])
             whole = energy.sum()
             cumulative = np.r_[0.0, np.cumsum(energy) / whole] if whole > 0 else np.linspace(0, 1, len(edges))
-            found[i] = np.interp(part, cumulative, edges)
-        return found
+            headings[i] = np.interp(part, cumulative, edges)
+        return headings
 
 
 def systems_spectrum(systems: Sequence[WaveSystem]) -> SystemsSpectrum:

@@ -50,7 +50,7 @@ class DirectionalTransfer(eqx.Module):
             tables: T of each heading, (6, n, n); its Hermitian part is used.
             newman: Use the diagonal alone.
         """
-        values = np.stack([0.5 * (one + np.conj(np.swapaxes(one, 1, 2))) for one in tables])
+        values = np.stack([0.5 * (table + np.conj(np.swapaxes(table, 1, 2))) for table in tables])
         values = np.einsum("dikk->dik", values) if newman else values
         return cls(jnp.asarray(omega), HeadingInterpolation.of(heading, values), newman)
 
@@ -74,13 +74,13 @@ class DirectionalTransfer(eqx.Module):
                 "the drift table has no pairs of waves of two headings: `approximation: newman` in the platform file, "
                 "or a sea of one heading, expected"
             )
-        place, share, inside = within(self.omega, omega)
-        index, offset = self.by_heading.place(heading)
+        lower, share, inside = within(self.omega, omega)
+        index, offset = self.by_heading.locate(heading)
         cubic = self.by_heading.coefficient
         if not self.newman:
             cubic = jnp.einsum("pdikk->pdik", cubic)
         powers = jnp.stack([offset**3, offset**2, offset, jnp.ones_like(offset)], axis=1)
-        below, above = (jnp.einsum("wpi,wp->iw", cubic[:, index, :, at], powers).real for at in (place, place + 1))
+        below, above = (jnp.einsum("wpi,wp->iw", cubic[:, index, :, column], powers).real for column in (lower, lower + 1))
         drift = jnp.where(inside, (1 - share) * below + share * above, 0.0)
         return (jnp.conj(amplitude.sum()) * (drift @ amplitude)).real
 

@@ -31,9 +31,9 @@ class Envelope(eqx.Module):
         Beyond the ends they are constant.
         """
         last = self.series.shape[0] - 1
-        place = jnp.clip(steps, 0.0, last)
-        base = jnp.clip(jnp.floor(place).astype(int) - 1, 0, max(last - 3, 0))
-        t = place - base
+        clipped = jnp.clip(steps, 0.0, last)
+        base = jnp.clip(jnp.floor(clipped).astype(int) - 1, 0, max(last - 3, 0))
+        t = clipped - base
         share = jnp.stack(
             [
                 (1 - t) * (t - 2) * (t - 3) / 6,
@@ -72,13 +72,13 @@ def envelope(
     """
     n, amplitude = waves.omega.size, waves.complex_amplitude()
     count = 1 << (2 * n - 1).bit_length()
-    one, weighted = jnp.fft.ifft(jnp.stack([amplitude, weight * amplitude]), n=count) * count
-    products = jnp.stack([one * one.conj(), weighted * one.conj()]).real
+    elevation, weighted = jnp.fft.ifft(jnp.stack([amplitude, weight * amplitude]), n=count) * count
+    products = jnp.stack([elevation * elevation.conj(), weighted * elevation.conj()]).real
     if transfer is not None:
         filtered = jnp.fft.ifft(transfer.at(waves.omega) * amplitude, n=count) * count
         products = jnp.concatenate([products, transfer.force(filtered)])
-    found = jnp.fft.rfft(products)[:, :n] / count
-    beats = found * jnp.where(jnp.arange(n) > 0, 2.0, 1.0)
+    spectra = jnp.fft.rfft(products)[:, :n] / count
+    beats = spectra * jnp.where(jnp.arange(n) > 0, 2.0, 1.0)
     shifted, mean = (-1j * beats[0]).at[0].set(0.0), (0.0 * beats[0]).at[0].set(beats[0, 0])
     turn = jnp.exp(1j * 2 * math.pi / waves.period * jnp.arange(n) * start)
     rows = jnp.concatenate([jnp.stack([beats[0], shifted, beats[1], mean]), beats[2:]])
@@ -88,5 +88,5 @@ def envelope(
     slow = 2 * waves.omega / (environment.gravity * (tanh + depths * (1 - tanh**2)))
     energy = waves.amplitude**2
     total = jnp.where(energy.sum() > 0, energy.sum(), 1.0)
-    kept = np.arange(share.shape[0]) % size
-    return Envelope(share[:, None] * series[:, kept].T, (energy * slow).sum() / total, jnp.zeros(()))
+    index = np.arange(share.shape[0]) % size
+    return Envelope(share[:, None] * series[:, index].T, (energy * slow).sum() / total, jnp.zeros(()))

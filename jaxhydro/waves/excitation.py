@@ -55,12 +55,14 @@ class Excitation(eqx.Module):
 
     def at(self, omega: Float[Array, " w"], heading: Float[Array, " w"] | None = None) -> Complex[Array, "6 w"]:
         """X at other frequencies (rad/s), (6, w). It is of one heading, whatever `heading` (rad) is."""
-        place, share, inside = within(self.omega, omega)
-        return jnp.where(inside, (1 - share) * self.force[:, place] + share * self.force[:, place + 1], 0.0)
+        lower, share, inside = within(self.omega, omega)
+        return jnp.where(inside, (1 - share) * self.force[:, lower] + share * self.force[:, lower + 1], 0.0)
 
 
 class DirectionalExcitation(eqx.Module):
-    """First-order wave force on a platform by frequency and heading, as `Excitation` between its frequencies.
+    """First-order wave force on a platform by frequency and heading.
+
+    Between its frequencies it is as `Excitation`.
 
     Attributes:
         omega: Angular frequencies (rad/s), ascending, (n,).
@@ -82,9 +84,9 @@ class DirectionalExcitation(eqx.Module):
             ValueError: Frequencies differ.
         """
         omega = np.asarray(tables[0].omega)
-        if any(one.omega.shape != omega.shape or not np.allclose(one.omega, omega, rtol=1e-6, atol=0) for one in tables):
+        if any(table.omega.shape != omega.shape or not np.allclose(table.omega, omega, rtol=1e-6, atol=0) for table in tables):
             raise ValueError("the same frequencies for all headings expected, found others")
-        return cls(tables[0].omega, HeadingInterpolation.of(heading, np.stack([np.asarray(one.force) for one in tables])))
+        return cls(tables[0].omega, HeadingInterpolation.of(heading, np.stack([np.asarray(table.force) for table in tables])))
 
     def towards(self, heading: float) -> Excitation:
         """The table of waves of one heading (rad)."""
@@ -92,15 +94,15 @@ class DirectionalExcitation(eqx.Module):
 
     def at(self, omega: Float[Array, " w"], heading: Float[Array, " w"]) -> Complex[Array, "6 w"]:
         """X of waves of some frequencies (rad/s) and headings (rad), one heading each, (6, w)."""
-        place, share, inside = within(self.omega, omega)
-        index, offset = self.by_heading.place(heading)
+        lower, share, inside = within(self.omega, omega)
+        index, offset = self.by_heading.locate(heading)
 
-        def column(at: Int[Array, " w"]) -> Complex[Array, "6 w"]:
-            cubic = self.by_heading.coefficient[:, index, :, at]  # (w, 4, 6)
+        def column(row: Int[Array, " w"]) -> Complex[Array, "6 w"]:
+            cubic = self.by_heading.coefficient[:, index, :, row]  # (w, 4, 6)
             powers = jnp.stack([offset**3, offset**2, offset, jnp.ones_like(offset)], axis=1)
             return jnp.einsum("wpi,wp->iw", cubic, powers)
 
-        return jnp.where(inside, (1 - share) * column(place) + share * column(place + 1), 0.0)
+        return jnp.where(inside, (1 - share) * column(lower) + share * column(lower + 1), 0.0)
 
 
 AnyExcitation: TypeAlias = Excitation | DirectionalExcitation
@@ -118,6 +120,6 @@ def within(
         omega: Frequencies to look up (rad/s), (w,).
     """
     inside = (omega >= table[0] * (1 - TABLE_END_TOLERANCE)) & (omega <= table[-1] * (1 + TABLE_END_TOLERANCE))
-    place = jnp.clip(jnp.searchsorted(table, omega, side="right") - 1, 0, len(table) - 2)
-    share = (omega - table[place]) / (table[place + 1] - table[place])
-    return place, jnp.clip(share, 0.0, 1.0), inside
+    lower = jnp.clip(jnp.searchsorted(table, omega, side="right") - 1, 0, len(table) - 2)
+    share = (omega - table[lower]) / (table[lower + 1] - table[lower])
+    return lower, jnp.clip(share, 0.0, 1.0), inside

@@ -12,14 +12,14 @@ class Cylinders(eqx.Module):
 
     Attributes:
         radius: Radii (m), (c,).
-        of: Index into `radius` by point; -1 for a point on no cylinder.
+        radius_index: Index into `radius` by point; -1 for a point on no cylinder.
         lag: Whether the force has its phase lag; False as in OpenFAST.
         bound: Whether the acceleration of bound waves acts; False as in OpenFAST.
         ramp: Whether `Flow.tuned` is computed.
     """
 
     radius: Float[Array, " c"]
-    of: tuple[int, ...] = eqx.field(static=True)
+    radius_index: tuple[int, ...] = eqx.field(static=True)
     lag: bool = eqx.field(static=True, default=True)
     bound: bool = eqx.field(static=True, default=True)
     ramp: bool = eqx.field(static=True, default=False)
@@ -67,7 +67,7 @@ class Flow(eqx.Module):
         pressure = self.pressure - 0.5 * share * (self.velocity**2).sum(axis=0)
         diffracted, tuned = self.diffracted, self.tuned
         if diffracted is not None and cylinders is not None:
-            on_cylinders = jnp.where(jnp.array(cylinders.of) >= 0, convective, 0.0)
+            on_cylinders = jnp.where(jnp.array(cylinders.radius_index) >= 0, convective, 0.0)
             diffracted = diffracted + 2 * on_cylinders
             tuned = None if tuned is None else tuned + on_cylinders
         return replace(self, acceleration=self.acceleration + convective, pressure=pressure, diffracted=diffracted, tuned=tuned)

@@ -78,7 +78,7 @@ class HeadingInterpolation(eqx.Module):
         past = np.mod(np.asarray(heading, float) - first + HEADING_TOLERANCE, 2 * math.pi)
         return past <= last - first + 2 * HEADING_TOLERANCE
 
-    def place(self, heading: Float[Array, "..."]) -> tuple[Int[Array, "..."], Float[Array, "..."]]:
+    def locate(self, heading: Float[Array, "..."]) -> tuple[Int[Array, "..."], Float[Array, "..."]]:
         """Knot below each heading (rad), and angle (rad) from there on.
 
         A heading beyond the table is taken to the nearer end.
@@ -94,9 +94,9 @@ class HeadingInterpolation(eqx.Module):
 
     def at(self, heading: Float[Array, ""] | float) -> Complex[Array, "..."]:
         """The table at one heading (rad)."""
-        index, offset = self.place(jnp.asarray(heading, float))
-        one = self.coefficient[:, index]
-        return ((one[0] * offset + one[1]) * offset + one[2]) * offset + one[3]
+        index, offset = self.locate(jnp.asarray(heading, float))
+        cubic = self.coefficient[:, index]
+        return ((cubic[0] * offset + cubic[1]) * offset + cubic[2]) * offset + cubic[3]
 
 
 def _spline(

@@ -84,8 +84,8 @@ def spectrum_components(
         The components.
 
     Raises:
-        ValueError: A band, duration, option or spectrum is out of range, or a wave of height 4 sqrt(m0) and the
-            zero-crossing period would break (Miche, as in `regular_wave`).
+        ValueError: A band, duration, option or spectrum is out of range. Or the sea breaks: a wave of height 4 sqrt(m0) and
+            the zero-crossing period would (Miche, as in `regular_wave`).
 
     References:
         Tucker, Challenor and Carter (1984), on random amplitudes; Jefferys (1987), on one direction per frequency.
@@ -167,7 +167,7 @@ def record_components(
     Raises:
         ValueError: As `separated_record`, or the mismatch is above `tolerance`.
     """
-    found = separated_record(
+    separation = separated_record(
         times,
         elevation,
         environment,
@@ -180,12 +180,12 @@ def record_components(
         kinds=kinds,
         highest_difference=highest_difference,
     )
-    if found.mismatch > tolerance:
+    if separation.mismatch > tolerance:
         raise ValueError(
-            f"first and second order miss {found.mismatch:.2%} of the record after {found.rounds} rounds, expected below "
-            f"{tolerance:.2%}: take a cutoff below {cutoff:g} Hz, a larger tolerance, or order 1"
+            f"first and second order miss {separation.mismatch:.2%} of the record after {separation.rounds} rounds, expected "
+            f"below {tolerance:.2%}: take a cutoff below {cutoff:g} Hz, a larger tolerance, or order 1"
         )
-    return found.waves
+    return separation.waves
 
 
 def separated_record(
@@ -269,17 +269,17 @@ def separated_record(
         return Separation(waves(measured), 0.0, 0)
     size = np.linalg.norm(measured)
     best, trial, share, rounds = measured, measured, 1.0, 0
-    left, least = measured, np.inf  # what the best trial misses, and its norm over the record's
+    residual, least = measured, np.inf  # what the best trial misses, and its norm over the record's
     while rounds < MAX_ROUNDS and least > 0.1 * tolerance and share > 1e-3:
         rounds += 1
         second = np.asarray(_second_order(waves(trial), environment, position, kinds, highest_difference))[band]
         missed = measured - trial - second
         mismatch = float(np.linalg.norm(missed) / size)
         if mismatch < least:
-            best, left, least = trial, missed, mismatch
+            best, residual, least = trial, missed, mismatch
         else:
             share *= 0.5  # gone too far: a shorter step from the best
-        trial = best + share * left
+        trial = best + share * residual
     return Separation(waves(best), least, rounds)
 
 
@@ -337,5 +337,5 @@ def _below_breaking(omega: np.ndarray, energy: np.ndarray, environment: Environm
     limit = 0.142 * 2 * math.pi / k * math.tanh(k * float(environment.depth))
     height, period = 4 * math.sqrt(m0), 2 * math.pi / crossing
     if height > limit:
-        found = f"found a significant height of {height:.3g} m"
-        raise ValueError(f"waves of zero-crossing period {period:.3g} s break above {limit:.3g} m, {found}")
+        actual = f"found a significant height of {height:.3g} m"
+        raise ValueError(f"waves of zero-crossing period {period:.3g} s break above {limit:.3g} m, {actual}")

@@ -49,7 +49,7 @@ class IrregularSea(AbstractSea):
         kinds: Frequencies of bound waves: "sum", "difference" or both.
         highest_difference: Highest difference frequency (Hz) of bound waves, as OpenFAST's `WvHiCOffD`; None: all.
         acting: Where bound waves act on the platform. "everywhere": as waves. "at the origin": the whole platform feels
-            their horizontal flow at the origin, without vertical flow or pressure, as where a program takes long waves for a
+            their horizontal flow at the origin, without vertical flow or pressure. Programs do so that take long waves for a
             changing current. "nowhere": only gauges measure them. Their elevation is always everywhere.
     """
 
@@ -63,7 +63,7 @@ class IrregularSea(AbstractSea):
     acting: Acting = eqx.field(static=True, default="everywhere")
 
     def __check_init__(self) -> None:
-        """Raise UnknownName for another order, stretching, kind or place of action."""
+        """Raise UnknownName for another order, stretching, kind or value of `acting`."""
         check(order=(self.order, (1, 2)), stretching=(self.stretching, get_args(Stretching)))
         check(acting=(self.acting, get_args(Acting)))
         for kind in self.kinds:
@@ -73,8 +73,8 @@ class IrregularSea(AbstractSea):
         """Order, water and components; shapes where the numbers are not computed yet."""
         from jaxhydro.display.summaries import are_numbers, irregular_sea_summary
 
-        known = are_numbers((self.components, self.environment.depth, self.ramp)) and self.components.amplitude.ndim == 1
-        return irregular_sea_summary(self) if known else eqx.Module.__repr__(self)
+        computed = are_numbers((self.components, self.environment.depth, self.ramp)) and self.components.amplitude.ndim == 1
+        return irregular_sea_summary(self) if computed else eqx.Module.__repr__(self)
 
     def direct(self) -> WaveSea:
         """The same sea by direct summation: exact, with N components and N² pairs at every point.
@@ -141,19 +141,19 @@ class IrregularSea(AbstractSea):
         first, last = waves.harmonics
         spectrum = np.zeros(2 * last + 1, complex)
         if order != 2:
-            there = waves.complex_amplitude() * jnp.exp(-1j * (jnp.asarray(position) @ waves.vector()))
-            spectrum[first : last + 1] = np.asarray(there)
+            at_gauge = waves.complex_amplitude() * jnp.exp(-1j * (jnp.asarray(position) @ waves.vector()))
+            spectrum[first : last + 1] = np.asarray(at_gauge)
         if order != 1 and self.order == 2:
             spectrum += np.asarray(self.bound_elevation(position))
         omega = 2 * math.pi / float(waves.period) * np.arange(spectrum.size)
         parts = np.array_split(times, max(1, times.size * omega.size // 2_000_000))
-        found = np.concatenate([(np.exp(1j * np.outer(part, omega)) @ spectrum).real for part in parts])
-        return found * np.asarray(growth(jnp.asarray(times), self.ramp))
+        elevation = np.concatenate([(np.exp(1j * np.outer(part, omega)) @ spectrum).real for part in parts])
+        return elevation * np.asarray(growth(jnp.asarray(times), self.ramp))
 
     def bound_elevation(self, position: tuple[float, float] = (0.0, 0.0)) -> Complex[Array, " b"]:
         """`elevation_spectrum` (m) of the bound waves, also for a sea of first order."""
-        at = jnp.asarray(position, float)
-        return _elevation(self.components, self.environment, at, self.kinds, self.highest_difference)
+        point = jnp.asarray(position, float)
+        return _elevation(self.components, self.environment, point, self.kinds, self.highest_difference)
 
     def prepared(
         self,
@@ -205,7 +205,7 @@ class IrregularSea(AbstractSea):
             points = np.concatenate([points, np.zeros((3, 1))], axis=1)
         middle, box = Box.of(points, heading, depth, excursion)
         free = float(waves.wavenumber[-1])
-        found = supports(box, free, 2 * free if self.order == 2 and "sum" in self.kinds else 0.0)
+        support_set = supports(box, free, 2 * free if self.order == 2 and "sum" in self.kinds else 0.0)
         size = round(period / clock.step)
         highest = waves.harmonics[1] * (self.order if "sum" in self.kinds else 1)
         if abs(size * clock.step - period) > 1e-6 * clock.step:
@@ -218,10 +218,10 @@ class IrregularSea(AbstractSea):
         share = np.asarray(growth(clock.start + clock.step * np.arange(clock.steps + 1), self.ramp)) ** 2
         return Preparation(
             self,
-            on_device(found.table),
-            found.spacing,
-            on_device(found.wavenumber),
-            on_device(np.exp(-2 * found.wavenumber * depth)),
+            on_device(support_set.table),
+            support_set.spacing,
+            on_device(support_set.wavenumber),
+            on_device(np.exp(-2 * support_set.wavenumber * depth)),
             on_device(middle),
             on_device(np.array([math.cos(heading), math.sin(heading)])),
             jnp.zeros(0) if cylinders is None else cylinders.radius,

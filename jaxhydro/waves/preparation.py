@@ -110,7 +110,10 @@ def _spectrum(
         return jnp.concatenate([even, odd, elevation[None]]), jnp.abs(k)
 
     def split(rows, moved):
-        """Rows with those of horizontal flow, and what it excites cylinders by, once more behind: moved there, or nothing."""
+        """Rows followed by those of horizontal flow and its excitation of cylinders.
+
+        If `moved`, these keep their values behind only, and elevation alone stays in its row. Else zeros follow.
+        """
         flow = jnp.concatenate([rows[:2], rows[3 : len(rows) // 2]])
         return jnp.concatenate([0 * rows[:-1], rows[-1:], flow] if moved else [rows, 0 * flow])
 
@@ -125,14 +128,14 @@ def _spectrum(
     rows = split(rows, False) if apart else rows
     if exciting is not None:
         rows = jnp.concatenate([exciting.at(free.omega) * free.elevation, rows])
-    found = jnp.swapaxes(rows, 0, 1)[:, :, None] * weights(table, spacing, k)[:, None]
+    spectrum = jnp.swapaxes(rows, 0, 1)[:, :, None] * weights(table, spacing, k)[:, None]
     if order == 1:
-        return jnp.pad(found, ((first, 0), (0, 0), (0, 0)))
+        return jnp.pad(spectrum, ((first, 0), (0, 0), (0, 0)))
     real, imaginary = jnp.split(sum_over_pairs(waves, environment, sums, *pairs), 2, axis=1)
     bound = real + 1j * imaginary
     if exciting is not None:
         bound = jnp.pad(bound, ((0, 0), (len(exciting.force), 0), (0, 0)))
-    return bound.at[first : last + 1].add(found)
+    return bound.at[first : last + 1].add(spectrum)
 
 
 @eqx.filter_jit
@@ -141,21 +144,21 @@ def _series(
 ) -> tuple[Float[Array, "t s f 2*r"], Float[Array, "h f 2*r"] | None]:
     """Real and imaginary parts at the times of a clock, by one inverse Fourier transform per node."""
     omega = fundamental * jnp.arange(spectrum.shape[0])
-    kept = clock.steps + 1
-    times = clock.start + clock.step * jnp.arange(kept)
+    count = clock.steps + 1
+    times = clock.start + clock.step * jnp.arange(count)
 
-    def at(node: Float[Array, ""]) -> Float[Array, "t f 2*r"]:
+    def series_at(node: Float[Array, ""]) -> Float[Array, "t f 2*r"]:
         shifted = spectrum * jnp.exp(1j * omega * (clock.start + node * clock.step))[:, None, None]
 
-        def one(rows):  # (b, r)
+        def transformed(rows):  # (b, r)
             values = jnp.fft.ifft(rows, n=size, axis=0) * size
-            values = jnp.concatenate([values] * math.ceil(kept / size))[:kept] if kept > size else values[:kept]
+            values = jnp.concatenate([values] * math.ceil(count / size))[:count] if count > size else values[:count]
             return jnp.concatenate([values.real, values.imag], axis=1)
 
         share = growth(times + node * clock.step, ramp)
-        return share[:, None, None] * jnp.swapaxes(jax.lax.map(one, jnp.swapaxes(shifted, 0, 1)), 0, 1)
+        return share[:, None, None] * jnp.swapaxes(jax.lax.map(transformed, jnp.swapaxes(shifted, 0, 1)), 0, 1)
 
-    series = jnp.stack([at(jnp.asarray(node)) for node in clock.nodes], axis=1)
+    series = jnp.stack([series_at(jnp.asarray(node)) for node in clock.nodes], axis=1)
     if not clock.fine:
         return series, None
     middle = times[: clock.fine] + 0.5 * clock.step

@@ -15,7 +15,7 @@ MIN_EIGENVALUE = 1e-6  # of the largest eigenvalue: what is less adds nothing
 class Transfer(eqx.Module):
     """Second-order force at difference frequencies, from a quadratic transfer function T.
 
-    F_i = Re sum_kl A_k conj(A_l) exp(i (w_k - w_l) t) T_i(w_k, w_l), with A_k the complex amplitudes of first-order waves at
+    F_i = Re sum_kl A_k conj(A_l) exp(i (w_k - w_l) t) T_i(w_k, w_l). A_k are the complex amplitudes of first-order waves at
     the origin, eta = Re sum A_k exp(i w_k t). T is Hermitian, so that T = sum_m e_m u_m conj(u_m)^T and
 
         F_i(t) = sum_m e_im |sum_k u_im(w_k) A_k exp(i w_k t)|²,
@@ -30,8 +30,7 @@ class Transfer(eqx.Module):
 
     References:
         Faltinsen (1990), Sea Loads on Ships and Offshore Structures, chapter 5; Pinkster (1980), Low frequency second order
-            wave
-        exciting forces on floating structures, section 2.
+        wave exciting forces on floating structures, section 2.
     """
 
     omega: Float[Array, " n"]
@@ -64,9 +63,9 @@ class Transfer(eqx.Module):
 
     def at(self, omega: Float[Array, " w"]) -> Complex[Array, "6 m w"]:
         """Filters at other frequencies (rad/s), (6, m, w)."""
-        place, share, inside = within(self.omega, omega)
-        found = (1 - share) * self.filters[..., place] + share * self.filters[..., place + 1]
-        return jnp.where(inside, found, 0.0)
+        lower, share, inside = within(self.omega, omega)
+        filters = (1 - share) * self.filters[..., lower] + share * self.filters[..., lower + 1]
+        return jnp.where(inside, filters, 0.0)
 
     def towards(self, heading: float) -> "Transfer":
         """The same: a table of one heading."""
@@ -75,7 +74,13 @@ class Transfer(eqx.Module):
     def of_waves(
         self, omega: Float[Array, " w"], heading: Float[Array, " w"], amplitude: Complex[Array, " w"]
     ) -> Float[Array, "6"]:
-        """Force (N, N m) of waves of frequencies (rad/s) and complex amplitudes (m). It is of one heading, whatever theirs."""
+        """Force (N, N m) of first-order waves, (6,).
+
+        Args:
+            omega: Angular frequencies (rad/s), (w,).
+            heading: Ignored: the table is of one heading, whatever theirs.
+            amplitude: Complex amplitudes (m), (w,).
+        """
         return self.force(self.at(omega) @ amplitude)
 
     def force(self, filtered: Complex[Array, "6 m ..."]) -> Float[Array, "6 ..."]:

@@ -32,8 +32,8 @@ def regular_wave(
 
     - Order 1: Airy's linear wave.
     - Order 2: Stokes' wave of second order in finite depth. The wavenumber is that of linear theory. With k = 2 pi / L and
-      T = tanh kh, the bound wave has the elevation H² k (3 - T²) / (16 T³) and the potential 3 H² omega / (32 sinh⁴ kh) times
-      cosh 2k(z + h), at twice the phase.
+      T = tanh kh, the bound wave has the elevation H² k (3 - T²) / (16 T³). Its potential is 3 H² omega / (32 sinh⁴ kh)
+      times cosh 2k(z + h). Both are at twice the phase.
     - Order 3 or more: stream-function wave of so many Fourier components, by raschii (`pip install 'jaxhydro[waves]'`). Its
       flow is that of the theory up to the surface.
 
@@ -67,17 +67,17 @@ def regular_wave(
     if order < 1:
         raise ValueError(f"the order of a regular wave is 1 or more, found {order}")
     omega = 2 * math.pi / period
-    one = components(jnp.array([0.5 * height]), jnp.array([omega]), environment, heading=heading, phase=phase)
-    k, depth = float(one.wavenumber[0]), float(environment.depth)
+    wave = components(jnp.array([0.5 * height]), jnp.array([omega]), environment, heading=heading, phase=phase)
+    k, depth = float(wave.wavenumber[0]), float(environment.depth)
     _check_breaking(height, period, k, depth, 1.0 if order <= 2 else MAX_LENGTHENING)
     if order > 2:
         if stretching not in ("vertical", "none"):
             raise ValueError(f"a stream-function wave has its own flow above still water: no stretching by {stretching}")
-        found = stream_function(height, period, depth, float(environment.gravity), order)
-        _check_breaking(height, period, found.wavenumber, depth)
-        return _steep(found, omega, environment, heading, phase, ramp, stretching)
-    waves = PlaneWaves.free(one, environment)
-    bound = bound_waves(one, environment, ("sum",)) if order == 2 else None
+        solution = stream_function(height, period, depth, float(environment.gravity), order)
+        _check_breaking(height, period, solution.wavenumber, depth)
+        return _steep(solution, omega, environment, heading, phase, ramp, stretching)
+    waves = PlaneWaves.free(wave, environment)
+    bound = bound_waves(wave, environment, ("sum",)) if order == 2 else None
     return WaveSea(waves, environment, ramp, stretching, bound)
 
 
@@ -89,7 +89,7 @@ def _check_breaking(height: float, period: float, k: float, depth: float, share:
 
 
 def _steep(
-    found: StreamFunction,
+    solution: StreamFunction,
     omega: float,
     environment: Environment,
     heading: float,
@@ -97,10 +97,10 @@ def _steep(
     ramp: float,
     stretching: Stretching,
 ) -> SteepWave:
-    number = np.arange(1, len(found.elevation) + 1)
+    number = np.arange(1, len(solution.elevation) + 1)
     turn = np.exp(1j * phase * number)
     along = np.array([[math.cos(heading)], [math.sin(heading)]])
-    fields = number * omega, along * number * found.wavenumber, found.elevation * turn, found.potential * turn
+    fields = number * omega, along * number * solution.wavenumber, solution.elevation * turn, solution.potential * turn
     waves, bound = (PlaneWaves(*(jnp.asarray(field[..., part]) for field in fields)) for part in (slice(1), slice(1, None)))
     return SteepWave(waves, environment, ramp, stretching, bound)
 

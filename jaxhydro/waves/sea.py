@@ -75,14 +75,14 @@ class AbstractSea(eqx.Module):
         """
         return None
 
-    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, " k"] | None:
-        """First-order force on a platform (N, N m, earth axes) from a table, (6,); None for a sea made without one.
+    def excitation(self, time: Float[Array, ""], position: Float[Array, "2"]) -> Float[Array, " k"] | None:
+        """First-order force of a table on a platform (N, N m, earth axes), (6,), or None.
 
-        Of several tables, the forces are one after the other.
+        It is None for a sea made without a table. Of several tables, the forces are one after the other.
 
         Args:
             time: Time (s).
-            place: Horizontal position of the platform (m), (2,).
+            position: Horizontal position of the platform (m), (2,).
         """
         return None
 
@@ -164,14 +164,14 @@ class WaveSea(AbstractSea):
         gradient: bool = False,
     ) -> Flow:
         level, above = self.levels(time, points)
-        found = self._of(self.waves, time, points, level, above, cylinders, gradient)
+        free = self._of(self.waves, time, points, level, above, cylinders, gradient)
         if self.bound is None:
-            return found
-        other = self._of(self.bound, time, points, level, above, cylinders, gradient)
+            return free
+        bound = self._of(self.bound, time, points, level, above, cylinders, gradient)
         if cylinders is not None and not cylinders.bound:
-            diffracted, tuned = (None if x is None else jnp.zeros_like(x) for x in (other.diffracted, other.tuned))
-            other = dataclasses.replace(other, diffracted=diffracted, tuned=tuned)
-        return jax.tree.map(jnp.add, found, other)
+            diffracted, tuned = (None if x is None else jnp.zeros_like(x) for x in (bound.diffracted, bound.tuned))
+            bound = dataclasses.replace(bound, diffracted=diffracted, tuned=tuned)
+        return jax.tree.map(jnp.add, free, bound)
 
     def levels(
         self, time: Float[Array, ""], points: Float[Array, "3 n"]
@@ -203,11 +203,13 @@ class WaveSea(AbstractSea):
             )
         if cylinders is None or not cylinders.radius.size:
             return Flow(velocity, acceleration, pressure, gradient=slopes)
-        of, ka = jnp.array(cylinders.of), k * cylinders.radius[:, None]
+        radius_index, ka = jnp.array(cylinders.radius_index), k * cylinders.radius[:, None]
 
         def excited(factors):
-            horizontally = sum(((rate * factor * horizontal) @ along).real * (of == i) for i, factor in enumerate(factors))
-            vertically = sum(((rate * factor * up) @ upward).real * (of == i) for i, factor in enumerate(factors))
+            horizontally = sum(
+                ((rate * factor * horizontal) @ along).real * (radius_index == i) for i, factor in enumerate(factors)
+            )
+            vertically = sum(((rate * factor * up) @ upward).real * (radius_index == i) for i, factor in enumerate(factors))
             return jnp.concatenate([horizontally, vertically[None]])
 
         factors = maccamy_fuchs(ka)
@@ -225,23 +227,28 @@ class WaveSea(AbstractSea):
 
     def drift(self, time: Float[Array, ""]) -> Float[Array, " d"]:
         omega = self.waves.omega
-        one = self.growth(time) * self.waves.elevation * jnp.exp(1j * omega * time)
-        every = one.sum().conj()
+        amplitudes = self.growth(time) * self.waves.elevation * jnp.exp(1j * omega * time)
+        every = amplitudes.sum().conj()
         sooner = jnp.sign(omega[:, None] - omega)
-        pairs = (sooner * (one[:, None] * one.conj()).imag).sum()
-        mean = (one * one.conj()).real.sum()
+        pairs = (sooner * (amplitudes[:, None] * amplitudes.conj()).imag).sum()
+        mean = (amplitudes * amplitudes.conj()).real.sum()
         plain = jnp.stack(
-            [(every * every.conj()).real, pairs, (((omega / DRIFT_REFERENCE_FREQUENCY) ** 2 * one).sum() * every).real, mean]
+            [
+                (every * every.conj()).real,
+                pairs,
+                (((omega / DRIFT_REFERENCE_FREQUENCY) ** 2 * amplitudes).sum() * every).real,
+                mean,
+            ]
         )
         if self.transfer is None:
             return plain
-        return jnp.concatenate([plain, self.transfer.of_waves(omega, self.headings(), one)])
+        return jnp.concatenate([plain, self.transfer.of_waves(omega, self.headings(), amplitudes)])
 
-    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
+    def excitation(self, time: Float[Array, ""], position: Float[Array, "2"]) -> Float[Array, "6"] | None:
         if self.exciting is None:
             return None
         exciting = self.exciting.at(self.waves.omega, self.headings())
-        angle = self.waves.omega * time - place @ self.waves.vector
+        angle = self.waves.omega * time - position @ self.waves.vector
         return self.growth(time) * (exciting @ (self.waves.elevation * jnp.exp(1j * angle))).real
 
     def with_tables(self, exciting: AnyExcitation | None, transfer: AnyTransfer | None) -> "WaveSea":

@@ -36,16 +36,16 @@ def sea_limits(height: float, period: float, environment: Environment, order: in
         Miche (1944), on steepness; Longuet-Higgins (1952), Journal of Marine Research 11, 245-266, on the highest wave;
         Hedges (1995), Proc. ICE Water, Maritime and Energy 112, 111-114, on the Ursell number.
     """
-    return [found for limit in LIMITS if (found := limit(height, period, environment, order, waves)) is not None]
+    return [remark for limit in LIMITS if (remark := limit(height, period, environment, order, waves)) is not None]
 
 
 def breaking_by_depth(height: float, period: float, environment: Environment, order: int, waves: float | None) -> Remark | None:
     """Remark on waves that are too high for the depth; arguments of `sea_limits`."""
     depth = float(environment.depth)
-    what, limit = ("height", 0.78) if waves is None else ("significant height", MAX_HEIGHT_PER_DEPTH)
+    quantity, limit = ("height", 0.78) if waves is None else ("significant height", MAX_HEIGHT_PER_DEPTH)
     if height <= limit * depth:
         return None
-    text = f"the {what}, {height:.3g} m, is {height / depth:.2g} of the depth: waves break by depth above {limit:g}"
+    text = f"the {quantity}, {height:.3g} m, is {height / depth:.2g} of the depth: waves break by depth above {limit:g}"
     return Remark(text, warning=True)
 
 

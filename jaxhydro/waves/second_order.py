@@ -57,7 +57,9 @@ def transfer(first: Wave, second: Wave, environment: Environment, kind: Kind) ->
 def _transfer(
     first: Wave, second: Wave, environment: Environment, sign: Float[Array, ""] | float
 ) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
-    """`transfer`, of the sign of the second frequency. At z = 0, with s the sign, omega = omega_i + s omega_j, k = k_i + s k_j,
+    """`transfer`, by the sign of the second frequency.
+
+    At z = 0, with s the sign, omega = omega_i + s omega_j, k = k_i + s k_j,
 
         K = g k . (k_i / omega_i + k_j / omega_j) / 2                              from -div(eta grad phi)
         D = (omega_i^2 + omega_j^2 + s omega_i omega_j - g^2 k_i . k_j / (omega_i omega_j)) / 2
@@ -110,14 +112,14 @@ def bound_waves(
         UnknownName: Another kind.
     """
     omega, vector, amplitude = waves.omega, waves.vector(), waves.complex_amplitude()
-    found = []
+    bound = []
     for kind in kinds:
         check(kinds=(kind, KINDS))
     if "sum" in kinds:
         i, j = np.tril_indices(omega.size)
         weight = jnp.where(i == j, 0.5, 1.0) * amplitude[i] * amplitude[j]
         e, phi = transfer((omega[i], vector[:, i]), (omega[j], vector[:, j]), environment, "sum")
-        found.append(PlaneWaves(omega[i] + omega[j], vector[:, i] + vector[:, j], weight * e, weight * phi))
+        bound.append(PlaneWaves(omega[i] + omega[j], vector[:, i] + vector[:, j], weight * e, weight * phi))
     if "difference" in kinds:
         i, j = np.tril_indices(omega.size, -1)
         e, phi = transfer((omega[i], vector[:, i]), (omega[j], vector[:, j]), environment, "difference")
@@ -127,12 +129,12 @@ def bound_waves(
             weight = jnp.where(_binds(jnp.abs(beat), highest_difference), weight, 0.0)
         turn = jnp.where(beat < 0, -1.0, 1.0)  # Re of the conjugate: i phi changes its sign
         weight = jnp.where(beat < 0, jnp.conj(weight), weight)
-        found.append(PlaneWaves(turn * beat, turn * (vector[:, i] - vector[:, j]), weight * e, turn * weight * phi))
+        bound.append(PlaneWaves(turn * beat, turn * (vector[:, i] - vector[:, j]), weight * e, turn * weight * phi))
         if set_down:
             e, _ = transfer((omega, vector), (omega, vector), environment, "difference")
             mean = 0.5 * (amplitude * jnp.conj(amplitude) * e).sum()[None]
-            found.append(PlaneWaves(jnp.zeros(1), jnp.zeros((2, 1)), mean, jnp.zeros(1, complex)))
-    return sum(found[1:], found[0])
+            bound.append(PlaneWaves(jnp.zeros(1), jnp.zeros((2, 1)), mean, jnp.zeros(1, complex)))
+    return sum(bound[1:], bound[0])
 
 
 class _Tiles(eqx.Module):
@@ -159,13 +161,13 @@ def _tiles(n: int, first: int, kinds: Sequence[Kind], width: int) -> _Tiles:
     if "difference" in kinds:
         lag = np.arange(n)
         parts.append((lag, 0 * lag, n - lag, lag, -1.0))
-    found = []
+    blocks = []
     for i, j, count, harmonic, sign in parts:
         runs = -(-count // width)
         lag = np.repeat(np.arange(count.size), runs)
         begin = width * (np.arange(lag.size) - np.repeat(np.cumsum(runs) - runs, runs))
-        found.append((i[lag] + begin, j[lag] + begin, np.full(lag.size, sign), harmonic[lag]))
-    return _Tiles(*(jnp.asarray(np.concatenate(column)) for column in zip(*found, strict=True)))
+        blocks.append((i[lag] + begin, j[lag] + begin, np.full(lag.size, sign), harmonic[lag]))
+    return _Tiles(*(jnp.asarray(np.concatenate(column)) for column in zip(*blocks, strict=True)))
 
 
 def _padded(rows: Float[Array, "r n"], width: int) -> Float[Array, "r m"]:
@@ -217,21 +219,21 @@ def sum_over_pairs(
     fundamental = waves.omega[-1] / last
 
     def sums(tables: tuple[Float[Array, "4 m"], Float[Array, "2 m"]], tile: _Tiles) -> PyTree:
-        (one, a), (other, b) = (
+        (wave_i, a), (wave_j, b) = (
             [jax.lax.dynamic_slice_in_dim(table, start, width, axis=1) for table in tables] for start in (tile.i, tile.j)
         )
-        e, phi = _transfer((one[1], one[2:]), (other[1], other[2:]), environment, tile.sign)
-        weight = jnp.where(one[0] == other[0], 0.5, 1.0) * jax.lax.complex(a[0], a[1])
+        e, phi = _transfer((wave_i[1], wave_i[2:]), (wave_j[1], wave_j[2:]), environment, tile.sign)
+        weight = jnp.where(wave_i[0] == wave_j[0], 0.5, 1.0) * jax.lax.complex(a[0], a[1])
         weight = weight * jax.lax.complex(b[0], tile.sign * b[1])
         omega = jnp.broadcast_to(tile.harmonic * fundamental, (width,))
         if highest_difference is not None:
             weight = jnp.where((tile.sign > 0) | _binds(omega, highest_difference), weight, 0.0)
-        return reduce(omega, one[2:] + tile.sign * other[2:], weight * e, weight * phi)
+        return reduce(omega, wave_i[2:] + tile.sign * wave_j[2:], weight * e, weight * phi)
 
     def step(total: PyTree, tile: _Tiles) -> tuple[PyTree, None]:
         # pairs are worked out again for gradients: kept, they are the square of the components
-        found = jax.checkpoint(sums, prevent_cse=False)(tables, tile)
-        return jax.tree.map(lambda t, f: t.at[tile.harmonic].add(f), total, found), None
+        partial = jax.checkpoint(sums, prevent_cse=False)(tables, tile)
+        return jax.tree.map(lambda t, f: t.at[tile.harmonic].add(f), total, partial), None
 
     tiles = _tiles(n, first, kinds, width)
     shapes = jax.eval_shape(sums, tables, jax.tree.map(lambda x: x[0], tiles))
@@ -263,8 +265,8 @@ def elevation_spectrum(
     Raises:
         ValueError: The components are not successive harmonics of a period.
     """
-    there = waves.phase - jnp.asarray(position, float) @ waves.vector()  # phases move with the components: nothing per pair
-    moved = Components(waves.amplitude, waves.omega, waves.wavenumber, waves.heading, there, waves.first)
+    phase = waves.phase - jnp.asarray(position, float) @ waves.vector()  # phases move with the components: nothing per pair
+    moved = Components(waves.amplitude, waves.omega, waves.wavenumber, waves.heading, phase, waves.first)
 
     def reduce(*pairs: Any) -> Complex[Array, ""]:
         return pairs[2].sum()

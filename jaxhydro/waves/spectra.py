@@ -69,10 +69,10 @@ def pierson_moskowitz(omega: Float[Array, "..."], significant_height: Scalar, pe
 @jax.jit
 def _smooth(omega, significant_height, peak_period):
     peak = 2 * math.pi / peak_period
-    there = omega > 0.1 * peak  # below, S underflows to 0, and its factors overflow
-    ratio = peak / jnp.where(there, omega, peak)
+    has_energy = omega > 0.1 * peak  # below, S underflows to 0, and its factors overflow
+    ratio = peak / jnp.where(has_energy, omega, peak)
     shape = ratio**5 * jnp.exp(-1.25 * ratio**4) / peak
-    return jnp.where(there, 0.3125 * significant_height**2 * shape, 0.0)
+    return jnp.where(has_energy, 0.3125 * significant_height**2 * shape, 0.0)
 
 
 def jonswap(

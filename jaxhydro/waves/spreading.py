@@ -1,4 +1,6 @@
-"""Directional spreading of waves: exponents of one law in terms of another, directions drawn, and circular moments.
+"""Directional spreading of waves: exponents, directions drawn, and circular moments.
+
+Exponents are those of one law in terms of another.
 
 The law of this package is `spectra.spreading`, D ~ |cos((heading - mean) / 2)|^(2 s) over the whole circle. With r its mean
 resultant, the first Fourier coefficient of D, r = s / (s + 1); the circular width is sqrt(2 (1 - r)) = sqrt(2 / (s + 1)).
@@ -82,9 +84,10 @@ def exponent_of_cosine(n: float) -> float:
 
 
 def spread_angle(exponent: float, share: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
-    """Angle (rad) from the mean direction below which a share of the energy travels, by `spectra.spreading`.
+    """Angle (rad) from the mean direction below which a share of the energy travels.
 
-    By the trapezoidal rule over 20000 steps, up to ten circular widths from the mean.
+    The law is `spectra.spreading`. It is integrated by the trapezoidal rule over 20000 steps, up to ten circular widths from
+    the mean.
 
     Args:
         exponent: s (-).
@@ -103,7 +106,7 @@ def equal_energy_shares(first: int, last: int, seed: int) -> Float[np.ndarray, "
     """Random shares of a sea's energy, for one direction per frequency component.
 
     Among `STRATA` successive harmonics each has another of as many equal parts of the energy, in random order, and a random
-    place in it. So every direction gets its energy in every narrow band, and no direction is left out of the tails. OpenFAST
+    point in it. So every direction gets its energy in every narrow band, and no direction is left out of the tails. OpenFAST
     gives `WaveNDir` directions of equal energy to its frequencies in the same way, always at the middle of their part.
 
     Shares are drawn by harmonic: another band leaves them as they are.
@@ -122,6 +125,6 @@ def equal_energy_shares(first: int, last: int, seed: int) -> Float[np.ndarray, "
     """
     order, within = np.random.default_rng(seed).spawn(5)[3:]  # after those of `spectrum_components`
     runs = -(-last // STRATA)
-    place = order.permuted(np.tile(np.arange(STRATA), (runs, 1)), axis=1).reshape(-1)
+    part = order.permuted(np.tile(np.arange(STRATA), (runs, 1)), axis=1).reshape(-1)
     inside = within.random(size=(runs, STRATA)).reshape(-1)
-    return ((place + inside) / STRATA)[first - 1 : last]
+    return ((part + inside) / STRATA)[first - 1 : last]

@@ -1,4 +1,7 @@
-"""Steep regular waves by the stream function: Fourier coefficients of raschii, and their flow up to the surface."""
+"""Steep regular waves by the stream function, with their flow up to the surface.
+
+Their Fourier coefficients are those of raschii.
+"""
 
 from typing import NamedTuple
 
@@ -59,9 +62,9 @@ def stream_function(height: float, period: float, depth: float, gravity: float, 
 
 
 class SteepWave(WaveSea):
-    """Stream-function wave: `WaveSea` with the flow of the theory up to the surface, and that of the surface above it.
+    """Stream-function wave: `WaveSea` with the flow of the theory up to the surface.
 
-    `waves` is the first harmonic, `bound` are the others.
+    Above the surface the flow is that of the surface. `waves` is the first harmonic, `bound` are the others.
     """
 
     def levels(

@@ -47,11 +47,11 @@ class Box(NamedTuple):
             depth: Water depth (m).
             excursion: Distance (m) by which the hull may move.
         """
-        place = np.array([math.cos(heading), math.sin(heading)]) @ points[:2]
-        half = 0.5 * np.ptp(place) + excursion
+        along = np.array([math.cos(heading), math.sin(heading)]) @ points[:2]
+        half = 0.5 * np.ptp(along) + excursion
         wide, deep = 0.25 * excursion, 0.1 * excursion
         low = max(-depth, float(points[2].min()) - 0.3 * excursion)
-        middle = float(0.5 * (place.max() + place.min()))
+        middle = float(0.5 * (along.max() + along.min()))
         return middle, cls(wide * math.ceil(half / wide - 1e-9), deep * math.floor(low / deep + 1e-9), depth)
 
 
@@ -75,8 +75,9 @@ class Supports(NamedTuple):
 def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLERANCE) -> Supports:
     """Fewest support wavenumbers in a box for free and bound waves.
 
-    Weights are the least-squares solution for cosh k(z+h) / cosh kh and sinh k(z+h) / sinh kh, times cos kx and sin kx, over
-    a grid on the box. Bound waves shorter than all free ones are low; their tolerance is `BOUND_TOLERANCE_FACTOR` times larger.
+    Weights are the least-squares solution over a grid on the box. They are for cosh k(z+h) / cosh kh and sinh k(z+h) / sinh
+    kh, times cos kx and sin kx. Bound waves shorter than all free ones are low; their tolerance is `BOUND_TOLERANCE_FACTOR`
+    times larger.
 
     Args:
         box: Region in which the field is needed.
@@ -123,7 +124,10 @@ def _too_short(highest: float, box: Box) -> str:
 
 
 def _fields(k: np.ndarray, x: np.ndarray, z: np.ndarray, depth: float) -> np.ndarray:
-    """Real and imaginary parts of both profiles times exp(-ikx) at all points: (4 n, k). x and -x have the same weights."""
+    """Real and imaginary parts of both profiles times exp(-ikx) at all points, (4 n, k).
+
+    x and -x have the same weights.
+    """
     phase = k[None] * x[:, None]
     down, up = np.exp(k * z[:, None]), np.exp(-k * (z[:, None] + 2 * depth))
     cosh = (down + up) / (1 + np.exp(-2 * k * depth))
@@ -135,16 +139,16 @@ def _fields(k: np.ndarray, x: np.ndarray, z: np.ndarray, depth: float) -> np.nda
 
 def weights(table: Float[Array, "g r"], spacing: float, k: Float[Array, " n"]) -> Float[Array, "n r"]:
     """Weights w_r(k) (-), (n, r), by cubic interpolation of the table in sqrt(k)."""
-    place = jnp.sqrt(jnp.maximum(k, 1e-20)) / spacing
-    base = jnp.clip(jnp.floor(place).astype(int) - 1, 0, table.shape[0] - 4)
-    t = (place - base)[:, None]  # of the cubic through 0, 1, 2, 3
+    steps = jnp.sqrt(jnp.maximum(k, 1e-20)) / spacing
+    base = jnp.clip(jnp.floor(steps).astype(int) - 1, 0, table.shape[0] - 4)
+    t = (steps - base)[:, None]  # of the cubic through 0, 1, 2, 3
     near = [
         -(t - 1) * (t - 2) * (t - 3) / 6,
         t * (t - 2) * (t - 3) / 2,
         -t * (t - 1) * (t - 3) / 2,
         t * (t - 1) * (t - 2) / 6,
     ]
-    return near[0] * table[base] + sum(one * table[base + i] for i, one in enumerate(near[1:], 1))
+    return near[0] * table[base] + sum(factor * table[base + i] for i, factor in enumerate(near[1:], 1))
 
 
 def cosine_sine(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
@@ -161,7 +165,14 @@ def cosine_sine(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Arra
 
 
 def _taylor(square: Float[Array, "..."], last: int) -> Float[Array, "..."]:
-    """Cosine's series up to x^last, or where `last` is odd that of sin x / x, by Horner's rule: no division."""
+    """Series of cos x up to x^last; where `last` is odd, series of sin x / x.
+
+    It is evaluated by Horner's rule, without division.
+
+    Args:
+        square: x².
+        last: Highest power of x, in sin x where it is odd.
+    """
     terms = [(-1) ** (power // 2) / math.factorial(power) for power in range(last, -1, -2)]
     total = jnp.full_like(square, terms[0])
     for term in terms[1:]:
@@ -178,10 +189,10 @@ def field(
     z: Float[Array, " n"],
     fade: Float[Array, " r"],
 ) -> tuple[Float[Array, "p n"], Float[Array, "q n"]]:
-    """Re sum c_r P(k_r, z) exp(-i k_r x) at points, with P cosh k(z+h) / cosh kh for `even`, sinh k(z+h) / sinh kh for `odd`.
+    """Sums over supports at points, Re sum c_r P(k_r, z) exp(-i k_r x).
 
-    Amplitudes are real parts, then imaginary ones; `fade` is exp(-2kh). Derivatives by x and z are worked out once for all
-    directions asked for.
+    P is cosh k(z+h) / cosh kh for `even`, sinh k(z+h) / sinh kh for `odd`. Amplitudes are real parts, then imaginary ones;
+    `fade` is exp(-2kh). Derivatives by x and z are worked out once for all directions asked for.
     """
     cosh, sinh = _terms(k, x, z, fade)
     return even @ cosh, odd @ sinh
@@ -239,6 +250,6 @@ def _surface_jvp(primals, tangents):
     amplitude, k, x = primals
     d_amplitude, _, d_x = tangents
     terms = jax.lax.optimization_barrier(jnp.concatenate(cosine_sine(k[:, None] * x)))
-    found = jnp.stack([amplitude, support_slope(amplitude, jnp.concatenate([k, k]))]) @ terms
-    tangent = found[1] * _zeros(d_x)
-    return found[0], tangent if isinstance(d_amplitude, SymbolicZero) else tangent + d_amplitude @ terms
+    sums = jnp.stack([amplitude, support_slope(amplitude, jnp.concatenate([k, k]))]) @ terms
+    tangent = sums[1] * _zeros(d_x)
+    return sums[0], tangent if isinstance(d_amplitude, SymbolicZero) else tangent + d_amplitude @ terms

@@ -89,9 +89,11 @@ def of_records(records: Iterable[tuple[Float[np.ndarray, " n"], float]], pace: f
         records: elevation (m) and sampling interval (s) of each. Every one has to lie in the band.
         pace: time over that of VolturnUS-S, by Froude.
     """
-    waves = [one for one in (wave_energy(*record) for record in records) if one is not None]
+    waves = [energy for energy in (wave_energy(*record) for record in records) if energy is not None]
     return _chosen(
-        lambda band: all(one.within(*band) >= MIN_ENERGY_IN_BAND for one in waves), [one.band for one in waves], pace
+        lambda band: all(energy.within(*band) >= MIN_ENERGY_IN_BAND for energy in waves),
+        [energy.band for energy in waves],
+        pace,
     )
 
 

@@ -145,7 +145,7 @@ def test_a_platform_file_names_them(case: Path) -> None:
     platform = load_platform(file)
     assert {platform.hydrostatics.kind, platform.excitation.kind, platform.radiation.kind} == {"nemoh"}
     edit(case / "mesh/Hydrostatics.dat", r"ZG =\s+0.000", "ZG =  -1.000")
-    statics = hydrostatics_of(platform.hydrostatics, platform.water).declared
+    statics = hydrostatics_of(platform.hydrostatics, platform.water).hydrostatics
     weight = 1000.0 * 9.81 * 76.21381
     assert statics.displaced_volume == pytest.approx(76.21381) and statics.C44 is None
     assert statics.C44_buoyancy == pytest.approx(2648637.8 - weight, rel=1e-4)

@@ -24,9 +24,13 @@ class CatenaryLines(AbstractLines):
     friction. Line inertia, drag and bending are left out. The balance of each line is that of
     `end_tension` (Jonkman 2007, NREL/TP-500-41958, section 2.6; Irvine 1981, Cable Structures).
 
-    Labels are `mooring.chain.axial_stiffness` (N) and `mooring.chain.submerged_weight` (N/m) of a line type named chain,
-    `mooring.line1.unstretched_length` (m), or `mooring.line1.segment2.unstretched_length` where a line has several
-    segments, counted from the anchor, `mooring.line1.anchor_shift` (m), and `mooring.seabed_friction` (-).
+    Labels:
+
+    - `mooring.chain.axial_stiffness` (N) and `mooring.chain.submerged_weight` (N/m), of a line type named chain;
+    - `mooring.line1.unstretched_length` (m), or `mooring.line1.segment2.unstretched_length` where a line has several
+      segments, counted from the anchor;
+    - `mooring.line1.anchor_shift` (m);
+    - `mooring.seabed_friction` (-).
     """
 
     types: tuple[tuple[str, ...], ...] = eqx.field(static=True)  # of the segments of each line, from the anchor
@@ -65,11 +69,18 @@ class CatenaryLines(AbstractLines):
         return jnp.where(square > 0, size, 0.0), pull / size
 
     def on_seabed(self, vertical: Float[Array, " l"]) -> Float[Array, " l"]:
-        """Unstretched length of each line that rests on the seabed (m), with a vertical tension at the fairlead (N)."""
+        """Unstretched length of each line that rests on the seabed (m), (l,).
+
+        Args:
+            vertical: Vertical tension at the fairleads (N), (l,).
+        """
         return length_on_seabed(vertical, self.segments())
 
     def segments(self) -> Segments:
-        """The lines as the equations read them, from the fairlead down; numbers of 0 are replaced by small ones."""
+        """The lines as the equations read them, from the fairlead down.
+
+        Numbers of 0 are replaced by small ones.
+        """
         most = max(map(len, self.types))
         rows = []
         for i, kinds in enumerate(self.types):
@@ -79,7 +90,9 @@ class CatenaryLines(AbstractLines):
                 for name, kind in zip(names, kinds)
             ][::-1]
             rows.append(row + [(jnp.zeros(()), *row[-1][1:])] * (most - len(row)))
-        length, weight, stiffness = (jnp.stack([jnp.stack([one[k] for one in row]) for row in rows], axis=1) for k in range(3))
+        length, weight, stiffness = (
+            jnp.stack([jnp.stack([segment[k] for segment in row]) for row in rows], axis=1) for k in range(3)
+        )
         total = length.sum(axis=0)
         length = jnp.where(total > 0, length, 1.0)
         stiffness = jnp.where(stiffness > 0, stiffness, 1.0)
@@ -102,12 +115,12 @@ class CatenaryLines(AbstractLines):
 
     def _present(self) -> Any:
         """Whether each line has a length, and each of its segments an axial stiffness."""
-        found = []
+        present = []
         for i, kinds in enumerate(self.types):
             length = sum(self.unstretched_length[name] for name in segment_names(i, len(kinds)))
             stiff = jnp.stack([self.axial_stiffness[kind] for kind in kinds]).min()
-            found.append((length > 0) & (stiff > 0))
-        return jnp.stack(found)
+            present.append((length > 0) & (stiff > 0))
+        return jnp.stack(present)
 
 
 def segment_names(line: int, count: int) -> list[str]:

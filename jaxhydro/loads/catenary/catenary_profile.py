@@ -1,4 +1,7 @@
-"""Shape of elastic catenaries of several segments, with seabed contact: span and height from the tension at the fairlead."""
+"""Shape of elastic catenaries of several segments, with seabed contact.
+
+Span and height follow from the tension at the fairlead.
+"""
 
 from typing import NamedTuple
 
@@ -84,7 +87,7 @@ def length_on_seabed(vertical: Float[Array, " l"], segments: Segments) -> Float[
         Length (m), (l,).
 
     References:
-        Jonkman 2007, NREL/TP-500-41958, section 2.6: what is suspended weighs as much as the vertical tension.
+        Jonkman 2007, NREL/TP-500-41958, section 2.6: the suspended part weighs as much as the vertical tension.
     """
     upper, rests = vertical, jnp.zeros_like(vertical)
     for length, weight in zip(segments.length, segments.weight):
@@ -132,7 +135,7 @@ def flexibility(
     horizontal: Float[Array, " l"], vertical: Float[Array, " l"], segments: Segments
 ) -> tuple[tuple[Array, Array], tuple[Array, Array], tuple[Array, Array]]:
     """Distances of `reach`, and their slopes by horizontal and by vertical tension (m/N)."""
-    one, none = jnp.ones_like(horizontal), jnp.zeros_like(horizontal)
-    found, by_horizontal = jax.jvp(lambda h, v: reach(h, v, segments), (horizontal, vertical), (one, none))
-    _, by_vertical = jax.jvp(lambda h, v: reach(h, v, segments), (horizontal, vertical), (none, one))
-    return found, by_horizontal, by_vertical
+    ones, zeros = jnp.ones_like(horizontal), jnp.zeros_like(horizontal)
+    distances, by_horizontal = jax.jvp(lambda h, v: reach(h, v, segments), (horizontal, vertical), (ones, zeros))
+    _, by_vertical = jax.jvp(lambda h, v: reach(h, v, segments), (horizontal, vertical), (zeros, ones))
+    return distances, by_horizontal, by_vertical

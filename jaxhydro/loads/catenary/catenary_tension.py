@@ -72,14 +72,14 @@ class _Search(NamedTuple):
 def _root(span: Float[Array, " l"], height: Float[Array, " l"], segments: Segments) -> tuple[Array, Array]:
     """Tension that `reach` needs for a distance, by Newton's method with a line search."""
 
-    def newton(at: _Search) -> _Search:
-        horizontal, vertical = at.horizontal + at.change, at.vertical + at.lift
+    def newton(search: _Search) -> _Search:
+        horizontal, vertical = search.horizontal + search.change, search.vertical + search.lift
         (x, z), by_horizontal, by_vertical = flexibility(horizontal, vertical, segments)
         x, z = x - span, z - height  # gradient of the complementary energy
         # beyond the minimum along the step, where the energy rises steeply: back by the secant
-        slope = x * at.change + z * at.lift
-        overshot = slope > -STEEPEST_RISE * at.slope
-        back = jnp.where(overshot, jnp.maximum(at.slope / (at.slope - jnp.where(overshot, slope, 0.0)), SHORTEST), 1.0)
+        slope = x * search.change + z * search.lift
+        overshot = slope > -STEEPEST_RISE * search.slope
+        back = jnp.where(overshot, jnp.maximum(search.slope / (search.slope - jnp.where(overshot, slope, 0.0)), SHORTEST), 1.0)
         full, fall = _solve(by_horizontal, by_vertical, -x, -z)
         # a tension that cannot be negative falls by a factor of 10 at most: by itself, or else with the whole step shortened
         lowest = jnp.where(segments.grounded, (DEEPEST_CUT - 1) * vertical, -jnp.inf)
@@ -88,19 +88,21 @@ def _root(span: Float[Array, " l"], height: Float[Array, " l"], segments: Segmen
         steep = x * change + z * lift > 0.1 * (x * full + z * fall) * whole
         change, lift = jnp.where(steep, whole * full, change), jnp.where(steep, whole * fall, lift)
         return _Search(
-            jnp.where(overshot, at.horizontal, horizontal),
-            jnp.where(overshot, at.vertical, vertical),
-            jnp.where(overshot, back * at.change, change),
-            jnp.where(overshot, back * at.lift, lift),
-            jnp.where(overshot, back * at.slope, x * change + z * lift),
+            jnp.where(overshot, search.horizontal, horizontal),
+            jnp.where(overshot, search.vertical, vertical),
+            jnp.where(overshot, back * search.change, change),
+            jnp.where(overshot, back * search.lift, lift),
+            jnp.where(overshot, back * search.slope, x * change + z * lift),
         )
 
     none = jnp.zeros_like(span)
-    at = newton(_Search(*start(span, height, segments), none, none, none))
+    search = newton(_Search(*start(span, height, segments), none, none, none))
     going = lambda state: ~state[0].within(TOLERANCE).all() & (state[1] < MOST_STEPS)  # noqa: E731
-    at, _ = jax.lax.while_loop(going, lambda state: (newton(state[0]), state[1] + 1), (at, jnp.asarray(1)))
-    found = at.within(ACCEPTED)
-    return jnp.where(found, at.horizontal + at.change, jnp.nan), jnp.where(found, at.vertical + at.lift, jnp.nan)
+    search, _ = jax.lax.while_loop(going, lambda state: (newton(state[0]), state[1] + 1), (search, jnp.asarray(1)))
+    solved = search.within(ACCEPTED)
+    return jnp.where(solved, search.horizontal + search.change, jnp.nan), jnp.where(
+        solved, search.vertical + search.lift, jnp.nan
+    )
 
 
 @_root.defjvp
@@ -130,8 +132,8 @@ def start(
 
     - A line that rests on the seabed: with q = H / (w z), its span is that of the slack line plus z phi(q),
       phi = 1 - sqrt(1 + 2 q) + q acosh(1 + 1 / q). This is inverted by a fit of ours, to about 5 %.
-    - A suspended line: its tension T along the chord D is the root of T³ + EA (l / D - 1) T² = EA (w X)² / 24, the cubic of
-      a parabolic cable (Irvine 1981, chapter 2).
+    - A suspended line: its tension T along the chord D is that of a parabolic cable (Irvine 1981, chapter 2). It is the root
+      of the cubic T³ + EA (l / D - 1) T² = EA (w X)² / 24.
     """
     length = segments.length.sum(axis=0)
     weight = (segments.weight * segments.length).sum(axis=0) / length

@@ -65,7 +65,7 @@ class DragFlow:
         return self.now.over_strips(spread(self.now.hull.elements, values, "Cd", missing))
 
     def part(self, lines: Float[Array, " l"]) -> Float[Array, "..."]:
-        """These strips' or ends' values of those of all lines."""
+        """Values at these strips or ends, out of values at all lines."""
         return self.now.hull.split(lines)[self.ends]
 
     def together(self, values: Float[Array, "..."]) -> Float[Array, "..."]:
@@ -90,27 +90,27 @@ def lines_of(hull: Hull, coefficients: Iterable[tuple[str, str]], both: bool = F
         coefficients: Groups and kinds of drag coefficients.
         both: Include the other directions of their strips.
     """
-    known, elements = set(coefficients), hull.elements
+    wanted, elements = set(coefficients), hull.elements
     names, of_ends = elements.owners("Cd"), hull.ends.owners("Cd")
-    strips = np.array([[names[row[e]] in known for e in hull.strips.element] for row in elements.label], bool)
+    strips = np.array([[names[row[e]] in wanted for e in hull.strips.element] for row in elements.label], bool)
     strips = strips.reshape(2, len(hull.strips.element))
     if both:
         strips = strips | strips[::-1]
     wide = np.asarray(hull.ends.radius) > 0
-    ends = [bool(wide[i]) and of_ends[k] in known for i, k in enumerate(hull.ends.label)]
+    ends = [bool(wide[i]) and of_ends[k] in wanted for i, k in enumerate(hull.ends.label)]
     return tuple(map(int, np.flatnonzero(np.concatenate([strips.reshape(-1), np.array(ends, bool)]))))
 
 
-def on_all_lines(hull: Hull, some: Float[Array, " k"], lines: tuple[int, ...]) -> Float[Array, " l"]:
+def on_all_lines(hull: Hull, values: Float[Array, " k"], lines: tuple[int, ...]) -> Float[Array, " l"]:
     """Values of some lines on all lines, 0 on the others.
 
     By a gather: scatters are slow on a CPU.
 
     Args:
         hull: The hull.
-        some: Values of `lines`, (k,).
+        values: Values of `lines`, (k,).
         lines: Numbers of these lines.
     """
-    place = np.full(2 * len(hull.strips.element) + len(hull.ends.label), len(lines))
-    place[list(lines)] = np.arange(len(lines))
-    return jnp.concatenate([some, jnp.zeros(1)])[place]
+    index = np.full(2 * len(hull.strips.element) + len(hull.ends.label), len(lines))
+    index[list(lines)] = np.arange(len(lines))
+    return jnp.concatenate([values, jnp.zeros(1)])[index]

@@ -46,16 +46,16 @@ class KeuleganCarpenterLaw(AbstractDragLaw):
     shed by edges at low K: n = -1/3 at a plate's, 0 at a right angle's. Cd is the coefficient at K = K0, the `reference`; n
     = 0 is `ConstantLaw`. e = 0.1 keeps it bounded at rest.
 
-    How K is known at every instant is ours. The amplitude a is that of the water's displacement past the strip, which needs
-    no period, so that one law serves a slow decay and waves: a^2 = 2 s, s the displacement's variance in a window that
-    forgets exponentially,
+    The package's own part is how K follows at every instant. The amplitude a is that of the water's displacement past the
+    strip. It needs no period, so that one law serves a slow decay and waves. a^2 = 2 s, with s the displacement's variance
+    in a window that forgets exponentially,
 
         dd/dt = u - d/w,   ds/dt = (d^2 - s)/w,   w = W (1 - (1 - 1/30) exp(-t/W)),
 
-    d the displacement from its mean there, W the `window` (s). w is what there is of it since the start: half a cycle after
-    a release a is about right. A harmonic flow has K = (U T/D)/(1 + (T/(2 pi W))^2)^0.5 in the mean, and s swings about it
-    by 1/(1 + (4 pi W/T)^2)^0.5: W about the longest period. A current counts as 2 pi 2^0.5 u W/D. `coupled`: a of both
-    directions together.
+    with d the displacement from its mean there, and W the `window` (s). w is the part of the window since the start: half a
+    cycle after a release a is about right. A harmonic flow has K = (U T/D)/(1 + (T/(2 pi W))^2)^0.5 in the mean. s swings
+    about it by 1/(1 + (4 pi W/T)^2)^0.5: take W about the longest period. A current counts as 2 pi 2^0.5 u W/D. `coupled`: a
+    of both directions together.
     """
 
     reference: Float[Array, " k"]

@@ -23,9 +23,9 @@ class MorisonDrag(AbstractLoad):
     The drag term of the relative Morison equation (Morison et al. 1950; Chakrabarti 1987, Hydrodynamics of Offshore
     Structures, chapter 6). A is the area that faces the direction: diameter or side height times length for t, plan width
     times length for z. |u| is the length of the transverse vector, which couples the two directions (OpenFAST's law, the
-    default), or with `coupled=False` that of the direction's own component, which only makes sense for rectangular
+    default). With `coupled=False` it is that of the direction's own component, which only makes sense for rectangular
     sections. On ends u is along the member and A the end's area, or that of a ring where the section changes (`EndShape`;
-    Robertson et al. 2014, NREL/TP-5000-60601); OpenFAST's own input for ends is twice this Cd, since it halves again.
+    Robertson et al. 2014, NREL/TP-5000-60601). OpenFAST's own input for ends is twice this Cd, since it halves again.
 
     Strips and ends whose coefficient is not in `Cd` have no drag of this load: another one may have it, by another law.
     """

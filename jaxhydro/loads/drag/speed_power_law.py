@@ -27,12 +27,11 @@ class SpeedPowerLaw(AbstractDragLaw):
     One exponent n for each group, n = 0 is `ConstantLaw` exactly. Cd is that at the `speed` U0; e = 0.04 U0 keeps it
     bounded at rest. |u| is that of the vector, or with `coupled=False` of the component, in the power, too.
 
-    A drag coefficient that goes as a power of the amplitude at a given period is one that goes as the same power of the
-    Keulegan-Carpenter number (Keulegan and Carpenter 1958, J. Res. Nat. Bur. Standards 60, 423-440; n = -1/3 at a sharp
-    edge, Graham 1980, J. Fluid Mech. 97, 331-346). This is the cheap form, ours, with the speed of the instant for that of
-    the cycle: no memory, and in a harmonic motion the loss per cycle goes as amplitude^(3 + n), as there, but for a
-    constant and for the form within a cycle. Where periods differ it goes with the speed, not with KC (see
-    `KeuleganCarpenterLaw`). Passive for any n.
+    At a given period a power of the amplitude is the same power of the Keulegan-Carpenter number (Keulegan and Carpenter
+    1958, J. Res. Nat. Bur. Standards 60, 423-440). At a sharp edge n = -1/3 (Graham 1980, J. Fluid Mech. 97, 331-346). This
+    law is the package's own, cheap form: it takes the speed of the instant for that of the cycle, and has no memory. In a
+    harmonic motion the loss per cycle goes as amplitude^(3 + n), as with that number, but for a constant. The form within a
+    cycle differs. Where periods differ it goes with the speed, not with KC (see `KeuleganCarpenterLaw`). Passive for any n.
     """
 
     exponent: Mapping[str, Float[Array, ""] | float] = parameters(_about)

@@ -1,4 +1,4 @@
-"""Drag laws in which slow motion has another coefficient than fast motion, by a filter of the velocity."""
+"""Drag laws with different coefficients for slow and fast motion, by a filter of the velocity."""
 
 import math
 from typing import Any, ClassVar, NamedTuple
@@ -76,12 +76,12 @@ class HighPassLaw(AbstractDragLaw):
         return FilterMemory(jnp.zeros(len(self.lines)), self.law.rest())
 
     def memory_rate(self, now: Instant, memory: FilterMemory) -> FilterMemory:
-        own, cutoff = (
+        lines, cutoff = (
             jnp.array(self.lines, dtype=int),
             (DragFlow(now, ends, False).spread(self.cutoff, 0.0) for ends in (False, True)),
         )
-        fast = relative_velocity(now)[own] - memory.slow
-        return FilterMemory(2 * math.pi * now.hull.join(*cutoff)[own] * fast, self.law.memory_rate(now, memory.law))
+        fast = relative_velocity(now)[lines] - memory.slow
+        return FilterMemory(2 * math.pi * now.hull.join(*cutoff)[lines] * fast, self.law.memory_rate(now, memory.law))
 
     def signed_square(self, flow: DragFlow, velocity: Float[Array, "..."], memory: FilterMemory) -> Float[Array, "..."]:
         fast = velocity - flow.part(on_all_lines(flow.now.hull, memory.slow, self.lines))
@@ -100,12 +100,13 @@ class SlowMotionLaw(AbstractDragLaw):
     fast motion and waves feel Cd. r = 1 is plain drag exactly, whatever fc; r above 1 gives slow motion more drag than fast.
     Another `law` may take the place of |u| u, such as `SpeedPowerLaw`.
 
-    The idea is that of OpenFAST HydroDyn's filtered drag (AxVnCOff and AxFDLoFSc, Morison.f90), which is `HighPassLaw`. The
-    difference: there the relative velocity of every line is filtered, water included, so that a current and slow
-    second-order flow have the small coefficient, too; here only the platform's own motion is, one r and one fc serve all,
-    and the state has six entries instead of one per line, which keeps derivatives cheap. Low-passing along body axes takes
-    the slow turning of these for none. Not passive at every instant: with r above 1, or where slow and fast motion mix, it
-    can, for a while, give energy back.
+    The idea is that of OpenFAST HydroDyn's filtered drag (AxVnCOff and AxFDLoFSc, Morison.f90), which is `HighPassLaw`.
+    There the relative velocity of every line is filtered, water included, so that a current and slow second-order flow have
+    the small coefficient, too. Here only the platform's own motion is filtered, and one r and one fc serve all. The state
+    has six entries instead of one per line, which keeps derivatives cheap.
+
+    Low-passing along body axes neglects their slow turning. The law is not passive at every instant. With r above 1, or
+    where slow and fast motion mix, it can give energy back for a while.
     """
 
     low_share: Float[Array, ""] = parameter(
