@@ -79,17 +79,17 @@ def _period_hints(records: Sequence[Record], modes: Modes, scale: float) -> Iter
         and max(abs(one - ratio) for one in every) < SAME_RATIO_TOLERANCE
         and ratio < 0
     ):
-        yield Hint(first, "time", f"{said}, as those of a model at 1:{math.exp(-2 * ratio):.3g} would be: is `scale` left out?")
+        yield Hint(first, "time", f"{said}, as those of a model at 1:{math.exp(-2 * ratio):.3g} would be. Is `scale` left out?")
 
 
 def _time_factors(scale: float) -> Iterator[tuple[float, str]]:
     if scale != 1:
         root = f"the square root of `scale`, {scale**0.5:.3g}"
-        full = "are the records at full scale already (then `scale` is 1), or is the platform at the model's scale?"
-        yield scale**0.5, f"longer by {root}: {full}" if scale > 1 else f"shorter by {root}: is `scale` turned round?"
-        yield scale**-0.5, f"off by {root}: were times scaled down before?"
+        full = "Are the records at full scale already (then `scale` is 1), or is the platform at the model's scale?"
+        yield scale**0.5, f"longer by {root}. {full}" if scale > 1 else f"shorter by {root}. Is `scale` turned round?"
+        yield scale**-0.5, f"off by {root}. Were times scaled down before?"
         turned = f"is `scale` turned round (1:{1 / scale:.3g} is `scale: {1 / scale:.3g}`)?"
-        yield scale, "longer by `scale`: times go with its square root, were they scaled before?" if scale > 1 else turned
+        yield scale, "longer by `scale`. Times go with its square root: were they scaled before?" if scale > 1 else turned
         yield 1 / scale, "shorter by `scale` itself: were times scaled down before?"
     for unit, factor in (("milliseconds", 1000.0), ("minutes", 60.0)):
         yield factor, f"`channels.time.unit`: {unit} and seconds mixed up?"
@@ -119,7 +119,7 @@ def _release_size_hints(records: Sequence[Record], length: float, scale: float, 
             times, units = (" or ".join(words) for words in zip(*fitting, strict=True))
             keys = ", ".join(f"`channels.{dof}.unit`" for dof in dict.fromkeys(r.degree_of_freedom for r in released))
             message = f"all releases in {name} are as if {times} times too {'large' if large else 'small'}"
-            yield Hint(released[0], str(released[0].degree_of_freedom), f"{message}: {units} mixed up ({keys})?")
+            yield Hint(released[0], str(released[0].degree_of_freedom), f"{message}. Are {units} mixed up ({keys})?")
 
 
 def _size_factors(turns: bool, scale: float) -> Iterator[tuple[float, str]]:
@@ -169,7 +169,7 @@ def _factor_in_words(one: str, two: str, values: Sequence[float], scale: float, 
     if all(value < 0 for value in values) and all(abs(math.log(-value)) < UNITY_TOLERANCE for value in values):
         keys = f"(`channels.{one}.sign` or `channels.{two}.sign`)"
         return (
-            f"{one} and {two} go together as the model's do, with the other sign: an axis reversed {keys}, or "
+            f"{one} and {two} go together as the model's do, with the other sign. Is an axis reversed {keys}, or were they "
             "recorded at another point (`tracked_point`)?"
         )
     turns = quantity(one) != quantity(two)
@@ -187,7 +187,7 @@ def _factor_in_words(one: str, two: str, values: Sequence[float], scale: float, 
         if all(abs(size - math.copysign(math.log(factor), sizes[0])) < UNITY_TOLERANCE for size in sizes)
     ]
     times = f"{math.exp(abs(float(np.median(sizes)))):.3g} times"
-    return f"{larger} is {times} too large beside {smaller}, by the model: {' or '.join(said)}?" if said else None
+    return f"{larger} is {times} too large beside {smaller}, by the model. Are {' or '.join(said)}?" if said else None
 
 
 def motion_hints(tests: Iterable[Mapping[str, tuple[np.ndarray, np.ndarray]]]) -> Iterator[str]:

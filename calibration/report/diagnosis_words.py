@@ -67,25 +67,25 @@ def verdict_sentence(saved: DiagnosisFile) -> str:
     if missing.verdict == Outcome.FOUND:
         more = f" {capitalised(doubted)} may stand for something else (see below)." if doubted else ""
         until = "" if saved.complete else " This is what was found until the search was stopped."
-        return f"The model lacks {names}: {error_reduction(saved)}.{more}{until}"
+        return f"The model lacks {names}. {error_reduction(saved)}.{more}{until}"
     if not saved.converged and not named:
         return UNFINISHED
     if missing.verdict == Outcome.NOTHING_MISSING:
         return "These records show nothing that the model lacks: no effect that was tried survives."
     lacks = "The model lacks something, and no effect that was tried explains it"
-    return f"{lacks}; {doubted} may stand for it: {error_reduction(saved)}." if doubted else f"{lacks}."
+    return f"{lacks}. {capitalised(doubted)} may stand for it. {error_reduction(saved)}." if doubted else f"{lacks}."
 
 
 def error_reduction(saved: DiagnosisFile) -> str:
     """How much smaller errors are, of the held-out tests where there are any."""
     before, after = saved.baseline.objective, saved.augmented.objective
     many, doubted = len(saved.missing.effects) > 1, any(one.in_doubt is not None for one in saved.missing.effects)
-    added = f"with {'all that was found' if many and doubted else 'them' if many else 'it'} in the model, the error"
+    added = f"With {'all that was found' if many and doubted else 'them' if many else 'it'} in the model, the error"
     if before.holdout and after.holdout is not None:
         return f"{added} of tests that were not fitted {describe_change(before.holdout, after.holdout)}"
     said = f"{added} of the fitted tests {describe_change(before.fit, after.fit)}"
     checked = any(one.evidence.holdout_gain is not None for one in saved.missing.effects)
-    return said if checked else f"{said}; no test was held out to check it"
+    return said if checked else f"{said}. No test was held out to check it"
 
 
 def describe_change(before: float, after: float) -> str:
@@ -104,7 +104,7 @@ def objectives_sentence(saved: DiagnosisFile) -> str:
     before, after = saved.baseline.objective, saved.augmented.objective
     said = f"The error of the fitted tests {describe_change(before.fit, after.fit)}"
     if before.holdout is not None and after.holdout is not None:
-        said += f", that of the held-out tests {describe_change(before.holdout, after.holdout)}"
+        said += f". That of the held-out tests {describe_change(before.holdout, after.holdout)}"
     return f"{said}."
 
 
@@ -169,13 +169,13 @@ def describe_alternatives(one: FoundEffect) -> str:
     said = f"These records cannot tell it from {names}." if names else ""
     if one.in_doubt == SECOND_ORDER:
         said += (
-            " The second order of the waves, which the motions follow worse with, was left out (see the notes), and goes with "
+            " The second order of the waves, which the motions follow worse with, was left out (see the notes). It goes with "
             "their square as well: this may stand for what acts in its place."
         )
     elif one.in_doubt == HELD_OUT_ERROR:
         said += (
-            " With all that was found in the model the tests that were not fitted are followed worse than without, altogether "
-            "or in this motion: it may stand for something else."
+            " With all that was found in the model, the tests that were not fitted are followed worse, altogether or in this "
+            "motion. It may stand for something else."
         )
     elif one.in_doubt == IMPLAUSIBLE_SIZE:
         ends = [
@@ -190,7 +190,7 @@ def describe_alternatives(one: FoundEffect) -> str:
     elif one.in_doubt is not None:
         said += (
             f" {capitalised(effect_in_words(one.in_doubt))} explains more of the fitted tests beside it than it does, and is "
-            "refused (see what was rejected): it may stand for something that neither is."
+            "refused (see what was rejected). It may stand for something that neither is."
         )
     elif not names and one.evidence.score is not None:
         said = "No other effect that was tried does as well."
@@ -220,5 +220,7 @@ def describe_unexplained(saved: DiagnosisFile) -> str:
     """What nothing explains."""
     left = saved.missing.unexplained
     share = f"{percent(left.share)} of the squared error above the noise, motion by motion, is left unexplained"
-    said = share if saved.missing.effects else "What is left"
-    return f"{said}: {left.signature.rstrip('.')}." if left.signature else f"{said}."
+    if not left.signature:
+        return f"{share if saved.missing.effects else 'What is left'}."
+    said = f"What is left: {left.signature.rstrip('.')}."
+    return f"{share}. {said}" if saved.missing.effects else said

@@ -83,7 +83,7 @@ def _values(declared: schema.Hydrostatics, found: FileHydrostatics, water: schem
     if declared.weight == "excluded":
         return values | {f"{key}_buoyancy": own[key] for key in wanted}, []
     said = (
-        f"{declared.file}: {many} are taken to include the weight, as WAMIT and Capytaine define them; in files made for "
+        f"{declared.file}: {many} are taken to include the weight, as WAMIT and Capytaine define them. In files made for "
         "OpenFAST they may not: `weight: excluded`"
     )
     return values | {key: own[key] for key in wanted}, [] if declared.weight else [said]

@@ -183,7 +183,7 @@ def record_components(
     if found.mismatch > tolerance:
         raise ValueError(
             f"first and second order miss {found.mismatch:.2%} of the record after {found.rounds} rounds, expected below "
-            f"{tolerance:.2%}: take a cutoff below {cutoff:g} Hz, a larger tolerance, or order 1"
+            f"{tolerance:.2%}. Take a cutoff below {cutoff:g} Hz, a larger tolerance, or order 1"
         )
     return found.waves
 
