@@ -86,18 +86,18 @@ def _period_hints(records: Sequence[Record], modes: Modes, scale: float) -> Iter
         and ratio < 0
     ):
         yield Hint(
-            first, "time", f"{sentence}, as those of a model at 1:{math.exp(-2 * ratio):.3g} would be: is `scale` left out?"
+            first, "time", f"{sentence}, as those of a model at 1:{math.exp(-2 * ratio):.3g} would be. Is `scale` left out?"
         )
 
 
 def _time_factors(scale: float) -> Iterator[tuple[float, str]]:
     if scale != 1:
         root = f"the square root of `scale`, {scale**0.5:.3g}"
-        full = "are the records at full scale already (then `scale` is 1), or is the platform at the model's scale?"
-        yield scale**0.5, f"longer by {root}: {full}" if scale > 1 else f"shorter by {root}: is `scale` turned round?"
-        yield scale**-0.5, f"off by {root}: were times scaled down before?"
+        full = "Are the records at full scale already (then `scale` is 1), or is the platform at the model's scale?"
+        yield scale**0.5, f"longer by {root}. {full}" if scale > 1 else f"shorter by {root}. Is `scale` turned round?"
+        yield scale**-0.5, f"off by {root}. Were times scaled down before?"
         turned = f"is `scale` turned round (1:{1 / scale:.3g} is `scale: {1 / scale:.3g}`)?"
-        yield scale, "longer by `scale`: times go with its square root, were they scaled before?" if scale > 1 else turned
+        yield scale, "longer by `scale`. Times go with its square root: were they scaled before?" if scale > 1 else turned
         yield 1 / scale, "shorter by `scale` itself: were times scaled down before?"
     for unit, factor in (("milliseconds", 1000.0), ("minutes", 60.0)):
         yield factor, f"`channels.time.unit`: {unit} and seconds mixed up?"
@@ -127,7 +127,7 @@ def _release_size_hints(records: Sequence[Record], length: float, scale: float, 
             times, units = (" or ".join(words) for words in zip(*fitting, strict=True))
             keys = ", ".join(f"`channels.{dof}.unit`" for dof in dict.fromkeys(r.degree_of_freedom for r in released))
             message = f"all releases in {name} are as if {times} times too {'large' if large else 'small'}"
-            yield Hint(released[0], str(released[0].degree_of_freedom), f"{message}: {units} mixed up ({keys})?")
+            yield Hint(released[0], str(released[0].degree_of_freedom), f"{message}. Are {units} mixed up ({keys})?")
 
 
 def _size_factors(turns: bool, scale: float) -> Iterator[tuple[float, str]]:
@@ -193,8 +193,8 @@ def _factor_in_words(first: str, second: str, values: Sequence[float], scale: fl
     if all(value < 0 for value in values) and all(abs(math.log(-value)) < UNITY_TOLERANCE for value in values):
         keys = f"(`channels.{first}.sign` or `channels.{second}.sign`)"
         return (
-            f"{first} and {second} go together as the model's do, with the other sign: an axis reversed {keys}, or "
-            "recorded at another point (`tracked_point`)?"
+            f"{first} and {second} go together as the model's do, with the other sign. Is an axis reversed {keys}, or were "
+            "they recorded at another point (`tracked_point`)?"
         )
     turns = quantity(first) != quantity(second)
     if {quantity(first), quantity(second)} & wrong_quantities or (turns and "time" in wrong_quantities):
@@ -211,7 +211,7 @@ def _factor_in_words(first: str, second: str, values: Sequence[float], scale: fl
         if all(abs(size - math.copysign(math.log(factor), sizes[0])) < UNITY_TOLERANCE for size in sizes)
     ]
     times = f"{math.exp(abs(float(np.median(sizes)))):.3g} times"
-    return f"{larger} is {times} too large beside {smaller}, by the model: {' or '.join(reasons)}?" if reasons else None
+    return f"{larger} is {times} too large beside {smaller}, by the model. Are {' or '.join(reasons)}?" if reasons else None
 
 
 def motion_hints(tests: Iterable[Mapping[str, tuple[np.ndarray, np.ndarray]]]) -> Iterator[str]:

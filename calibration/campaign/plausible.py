@@ -73,8 +73,8 @@ def _rest_findings(decays: Sequence[Record], rest: dict[str, float], length: flo
         limit = MAX_REST_OFFSET * (1.0 if name in DOFS[3:] else length)
         if ends and abs(offset := float(np.median(ends)) - rest[name]) > limit:
             message = (
-                f"decays end {_in_words(name, offset)} from where the declared platform floats: `zero` would say where still "
-                "water is, without it that is taken for ballast or a force"
+                f"decays end {_in_words(name, offset)} from the equilibrium of the platform file. `zero` would say where still "
+                "water is: without it the difference is taken for ballast or a force"
             )
             yield Finding("warning", decays[0].file, decays[0].id, name, None, message)
 
@@ -132,11 +132,11 @@ def _record_findings(
 def _period_reason(ratio: float, scale: float) -> tuple[str, bool]:
     """What may explain a measured period over the model's, and whether `scale` does."""
     if scale != 1 and abs(np.log(ratio / scale**0.5)) < SCALE_TOLERANCE:
-        return f"longer by the square root of `scale`, {scale**0.5:.3g}: are the records at full scale already?", True
+        return f"longer by the square root of `scale`, {scale**0.5:.3g}. Are the records at full scale already?", True
     if scale != 1 and abs(np.log(ratio * scale**0.5)) < SCALE_TOLERANCE:
-        return f"shorter by the square root of `scale`, {scale**0.5:.3g}: were times scaled down before?", True
+        return f"shorter by the square root of `scale`, {scale**0.5:.3g}. Were times scaled down before?", True
     if scale == 1 and 1 / WRONG_PERIOD_RATIO < ratio < 1 / UNUSUAL_PERIOD_RATIO:
-        return f"a unit of time, or a `scale` of about {float(f'{ratio**-2:.2g}'):g}, as model-scale records would need?", False
+        return f"a unit of time, or a `scale` of about {float(f'{ratio**-2:.2g}'):g}, as of a model?", False
     return "a unit of time, or the scale?", False
 
 

@@ -39,8 +39,8 @@ def second_order_hint(recorded: Sequence[tuple[Run, IrregularSea]], band: tuple[
     )
     key = f"{{kinds: [{present[0]}]}}" if present else "{order: 1}"
     return (
-        f"of the second-order waves that theory binds to waves of this height the records have {percent} of frequencies; "
-        f"if they were recorded so, state `records: {key}` in campaign.yaml",
+        f"of the second-order waves that theory gives for waves of this height the records have {percent} of frequencies. "
+        f"If they were recorded so, state `records: {key}` in campaign.yaml",
     )
 
 

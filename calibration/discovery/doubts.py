@@ -10,7 +10,7 @@ import numpy as np
 from calibration.discovery.acceptance import worsening
 from calibration.discovery.diagnosis import Finding
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.effects.effect_names import effect_in_words
+from calibration.discovery.effects.effect_names import capitalised, effect_in_words
 from calibration.discovery.reported_effects import HELD_OUT_ERROR
 from calibration.formatting import listed, number, percent
 from calibration.result import Calibration
@@ -129,10 +129,11 @@ def held_out_error_rose(before: float | None, after: float | None) -> bool:
 
 def unexplained_note(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
     """Note that the effects found do not make the model follow the records."""
-    names, worst = listed([effect_in_words(candidate.effect, candidate.dof) for candidate in chosen]), more[0]
+    names, worst = [effect_in_words(candidate.effect, candidate.dof) for candidate in chosen], more[0]
+    added = names[0] if len(names) == 1 else f"all {len(names)} effects"
     return (
-        f"with {names} in the model {percent(worst.relative)} of {worst.channel} is left in {worst.test}: what acts is not, or "
-        "not only, what was found, and sizes are less sure than their deviations say"
+        f"with {added} in the model, {percent(worst.relative)} of {worst.channel} is left in {worst.test}. Something else "
+        "acts instead, or as well. Sizes are less sure than their deviations say"
     )
 
 
@@ -150,9 +151,10 @@ def moving_release_notes(search: Search, state: FitState) -> list[str]:
             moving.append(record.id)
     if not moving:
         return []
+    begin, have = "begin" if len(moving) > 1 else "begins", "have" if len(names) > 1 else "has"
     return [
-        f"{listed(moving)} {'begin' if len(moving) > 1 else 'begins'} in motion, and {listed(names)} as if what has a memory "
-        "had been at rest until then: where that is not so sizes are wrong; let records begin at the release"
+        f"{listed(moving)} {begin} in motion. {capitalised(listed(names))} {have} a memory that is taken to be at rest before. "
+        "Where it was not, sizes are wrong: let records begin at the release"
     ]
 
 
@@ -169,4 +171,4 @@ def far_coefficient_notes(search: Search, fitted: Calibration) -> list[str]:
     if not far:
         return []
     named = ", ".join(f"{estimate.label} {number(estimate.value, 2)} ({number(estimate.start, 2)})" for estimate in far)
-    return [f"far from what was declared (in brackets): {named}; they may stand for something that the model lacks"]
+    return [f"far from the platform file's values (in brackets): {named}. They may stand for something that the model lacks"]

@@ -10,7 +10,7 @@ import numpy as np
 
 from calibration.campaign.manifest import WAVE
 from calibration.discovery.diagnosis import Finding
-from calibration.formatting import number
+from calibration.formatting import listed, number
 
 if TYPE_CHECKING:
     from calibration.discovery.fit_state import FitState
@@ -70,11 +70,9 @@ def signature(search: Search, before: FitState, after: FitState) -> tuple[float,
         key = (series.channel, "decays" if series.kind == "decay" else "waves")
         by_motion[key] = max(by_motion.get(key, 0.0), float(relative))
     rows = sorted(by_motion.items(), key=lambda item: -item[1])[:3]
-    largest = ", ".join(
-        f"{channel} in {kind} ({100 * value:.0f} % of the motion)" for (channel, kind), value in rows if value > 0.005
-    )
+    shares = [f"{100 * value:.0f} % of {channel} in {kind}" for (channel, kind), value in rows if value > 0.005]
     i = int(np.argmax(np.where(told, after.left.error / spread, 0.0)))
     series = study.series[i]
     k = int(np.argmax((study.mean_squares(after.residual)[i] - 1) * series.dof * series.floor**2))
-    where = f"largest in {series.channel} of the test {series.test}, {series.low[k]:.3g} to {series.high[k]:.3g} Hz"
-    return share, f"{largest or 'small in every motion'}; {where}"
+    where = f"{series.channel} of the test {series.test}, from {series.low[k]:.3g} to {series.high[k]:.3g} Hz"
+    return share, f"{listed(shares) or 'small in every motion'}. The error is largest in {where}"

@@ -136,7 +136,7 @@ class Search(EffectFits):
         self.rejected.pop(candidate.name, None)
         names = " and ".join(label.split(".")[1].replace("_", " ") for label in off)
         self.notes.append(
-            f"{names} {'are' if len(off) > 1 else 'is'} further from what is declared than what was weighed usually is; the "
-            "records are followed no better for it, as mass properties are free to move a little in every fit"
+            f"{names} {'are' if len(off) > 1 else 'is'} further from the platform file's values than what was weighed usually "
+            "is. The records are followed no better for it: mass properties are free to move a little in every fit"
         )
         return after

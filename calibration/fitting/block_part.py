@@ -139,5 +139,5 @@ class BlockPart(AbstractPart):
     def notes(self) -> tuple[str, ...]:
         said = listed([f"{percent(jump)} in {dof}" for dof, jump in self.jumps.items()])
         blocks = f"{len(self.problem.piece)} blocks that start anew"
-        jumps = f"from the end of one to the start of the next the simulated motion jumps by {said} of its standard deviation"
-        return (f"{blocks}: {jumps} (root mean square); large jumps say what the model lacks",)
+        jumps = f"From one to the next the simulated motion jumps by {said} of its standard deviation (root mean square)"
+        return (f"{blocks}. {jumps}. Large jumps say what the model lacks",)

@@ -49,7 +49,7 @@ def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
             alike.setdefault(f"{length:.0f} s are few natural periods ({', '.join(few)})", []).append(test.id)
     for short, ids in alike.items():
         yield (
-            f"{listed(ids)}: {short}: how much energy a slow motion has in them is to a good part chance, and stated "
+            f"{listed(ids)}: {short}. How much energy a slow motion has in them is to a good part chance, and stated "
             f"deviations are too small. {rounded_up(longest):g} s or more after the transient would tell"
         )
 

@@ -70,8 +70,9 @@ class Direction(NamedTuple):
         verb = "cannot tell" if self.standard_deviation > 1 else "can hardly tell"
         apart = f"{labels[0]} from {labels[1]}" if len(labels) == 2 else f"{listed(labels)} from one another"
         moves = listed([f"{label} {100 * change:+.2g} %" for label, change in self.movement.items()])
-        known = "" if again else f"; {self.known or 'no combination of them is known either'}"
-        return f"{source} {verb} {apart}: {moves} together leave the records as they are{known}"
+        known = str(self.known or "no combination of them is known either")
+        said = f"{source} {verb} {apart}. Together {moves} leave the records as they are"
+        return said if again else f"{said}. {known[0].upper()}{known[1:]}"
 
 
 class Fix(NamedTuple):
@@ -85,9 +86,9 @@ class Fix(NamedTuple):
 
     def __str__(self) -> str:
         known = listed([f"{label} to {percent(deviation)}" for label, deviation in self.after.items()])
-        gain = f"the others are then known better, {known}" if known else "the others are then known better"
+        gain = f"The others are then known better: {known}" if known else "The others are then known better"
         ways = "fix it (`calibrate.fixed`) or give it a prior (`calibrate.priors`)"
-        return f"if {self.label} is known from elsewhere, {ways}: {gain}"
+        return f"if {self.label} is known from elsewhere, {ways}. {gain}"
 
 
 class Collinear(NamedTuple):

@@ -60,12 +60,12 @@ _EFFECT = (
     "it. Grey: two standard deviations of the noise."
 )
 _SCORES = (
-    "How much better the fitted tests are with every candidate, in −2 ln L: at first order (bars) and refitted (dots), "
-    "the best of every round."
+    "How much better the fitted tests are with every candidate, in −2 ln L, the best of every round. Bars are at first "
+    "order, dots refitted."
 )
 _LATENT = (
-    "Test {id}: the force in {motion} that would have to act on the model for it to follow the record, the law of few "
-    "terms that explains it, if there is one, and what may drive it."
+    "Test {id}: the force in {motion} that would have to act on the model for it to follow the record. Beside it the "
+    "law of few terms that explains it, if there is one, and what may drive it."
 )
 _SPECTRA = "Test {id}: spectra of the motions, measured and simulated without what was missing and with it; bands shaded."
 

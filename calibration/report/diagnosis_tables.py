@@ -19,9 +19,9 @@ USE_ORDER = list(USE)
 MAX_RELATIVE_ERROR = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything
 NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
 VARIED = (
-    f"Properties that are nearly known, fitted near their declared values (one standard deviation: mass {percent(MASS)}, "
-    f"inertia {percent(INERTIA)}, moorings {percent(STIFFNESS)}; centre of mass {100 * CENTRE_UP:.2g} % of the displaced "
-    f"volume's cube root upwards, {100 * CENTRE_ALONG:.1g} % lengthwise; trim)"
+    "Properties that are nearly known, trim among them, fitted near the platform file's values. Standard deviations: mass "
+    f"{percent(MASS)}, inertia {percent(INERTIA)}, moorings {percent(STIFFNESS)}. The centre of mass has "
+    f"{100 * CENTRE_UP:.2g} % of the displaced volume's cube root upwards, {100 * CENTRE_ALONG:.1g} % lengthwise"
 )
 
 

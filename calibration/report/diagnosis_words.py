@@ -78,25 +78,25 @@ def verdict_sentence(saved: DiagnosisFile) -> str:
     if missing.verdict == Outcome.FOUND:
         more = f" {capitalised(doubted)} may stand for something else (see below)." if doubted else ""
         until = "" if saved.complete else " This is what was found until the search was stopped."
-        return f"The model lacks {names}: {error_reduction(saved)}.{more}{until}"
+        return f"The model lacks {names}. {error_reduction(saved)}.{more}{until}"
     if not saved.converged and not named:
         return UNFINISHED
     if missing.verdict == Outcome.NOTHING_MISSING:
         return "These records show nothing that the model lacks: no effect that was tried survives."
     lacks = "The model lacks something, and no effect that was tried explains it"
-    return f"{lacks}; {doubted} may stand for it: {error_reduction(saved)}." if doubted else f"{lacks}."
+    return f"{lacks}. {capitalised(doubted)} may stand for it. {error_reduction(saved)}." if doubted else f"{lacks}."
 
 
 def error_reduction(saved: DiagnosisFile) -> str:
     """How much smaller errors are, of the held-out tests where there are any."""
     before, after = saved.baseline.objective, saved.augmented.objective
     many, doubted = len(saved.missing.effects) > 1, any(effect.in_doubt is not None for effect in saved.missing.effects)
-    added = f"with {'all that was found' if many and doubted else 'them' if many else 'it'} in the model, the error"
+    added = f"With {'all that was found' if many and doubted else 'them' if many else 'it'} in the model, the error"
     if before.holdout and after.holdout is not None:
         return f"{added} of tests that were not fitted {describe_change(before.holdout, after.holdout)}"
     sentence = f"{added} of the fitted tests {describe_change(before.fit, after.fit)}"
     checked = any(effect.evidence.holdout_gain is not None for effect in saved.missing.effects)
-    return sentence if checked else f"{sentence}; no test was held out to check it"
+    return sentence if checked else f"{sentence}. No test was held out to check it"
 
 
 def describe_change(before: float, after: float) -> str:
@@ -115,7 +115,7 @@ def objectives_sentence(saved: DiagnosisFile) -> str:
     before, after = saved.baseline.objective, saved.augmented.objective
     sentence = f"The error of the fitted tests {describe_change(before.fit, after.fit)}"
     if before.holdout is not None and after.holdout is not None:
-        sentence += f", that of the held-out tests {describe_change(before.holdout, after.holdout)}"
+        sentence += f". That of the held-out tests {describe_change(before.holdout, after.holdout)}"
     return f"{sentence}."
 
 
@@ -182,13 +182,13 @@ def describe_alternatives(effect: FoundEffect) -> str:
     text = f"These records cannot tell it from {names}." if names else ""
     if effect.in_doubt == SECOND_ORDER:
         text += (
-            " The second order of the waves, which the motions follow worse with, was left out (see the notes), and goes with "
+            " The second order of the waves, which the motions follow worse with, was left out (see the notes). It goes with "
             "their square as well: this may stand for what acts in its place."
         )
     elif effect.in_doubt == HELD_OUT_ERROR:
         text += (
-            " With all that was found in the model the tests that were not fitted are followed worse than without, altogether "
-            "or in this motion: it may stand for something else."
+            " With all that was found in the model, the tests that were not fitted are followed worse, altogether or in this "
+            "motion. It may stand for something else."
         )
     elif effect.in_doubt == IMPLAUSIBLE_SIZE:
         ends = [
@@ -203,7 +203,7 @@ def describe_alternatives(effect: FoundEffect) -> str:
     elif effect.in_doubt is not None:
         text += (
             f" {capitalised(effect_in_words(effect.in_doubt))} explains more of the fitted tests beside it than it does, and "
-            "is refused (see what was rejected): it may stand for something that neither is."
+            "is refused (see what was rejected). It may stand for something that neither is."
         )
     elif not names and effect.evidence.score is not None:
         text = "No other effect that was tried does as well."
@@ -233,5 +233,7 @@ def describe_unexplained(saved: DiagnosisFile) -> str:
     """Sentence on the part of the error that nothing explains."""
     residual = saved.missing.unexplained
     share = f"{percent(residual.share)} of the squared error above the noise, motion by motion, is left unexplained"
-    subject = share if saved.missing.effects else "What is left"
-    return f"{subject}: {residual.signature.rstrip('.')}." if residual.signature else f"{subject}."
+    if not residual.signature:
+        return f"{share if saved.missing.effects else 'What is left'}."
+    rest = f"What is left: {residual.signature.rstrip('.')}."
+    return f"{share}. {rest}" if saved.missing.effects else rest

@@ -18,8 +18,8 @@ FIGURES = {
         "Standard deviation by sea state, over seeds and headings; areas are shares of the life. A ring: no run of it is done."
     ),
     "exceedance.png": (
-        "Probability that a run goes beyond: below a minimum, to the left, and above a maximum, to the right; each "
-        "seed's, and of all seeds together."
+        "Probability that a run goes beyond: below a minimum, to the left, and above a maximum, to the right. Of each "
+        "seed, and of all seeds together."
     ),
 }
 STATISTICS = {

@@ -39,7 +39,7 @@ from jaxhydro.waves.sea_limits import sea_limits
 
 MAX_MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
 MIN_BAND_SHARE = 0.95  # of its variance, that should lie in the band
-NO_ZERO = "the campaign states no `zero`: motions are taken as measured from the reference position"
+NO_ZERO = "the campaign states no `zero`: motions count from the reference position"
 
 
 @dataclass(frozen=True, eq=False)

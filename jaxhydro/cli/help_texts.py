@@ -20,9 +20,8 @@ EPILOG = "\n\n".join(
         "[bold]Formats[/bold]",
         "docs/formats.md describes every key of platform and campaign files, and of the results. `jaxhydro init` makes a "
         "campaign to fill in; `jaxhydro demo` prints where a complete one is.",
-        "Exit status: 0 done; 2 the input is wrong; 3 not converged, or runs of a sweep failed, with what "
-        "was reached written and "
-        "marked so, or a motion that grew beyond all bounds, with nothing written; 130 stopped.",
+        "Exit status: 0 done; 2 the input is wrong; 3 not converged, or runs of a sweep failed; 130 stopped. With 3, what "
+        "was reached is written and marked so. If a motion grew beyond all bounds, nothing is written.",
     )
 )
 EXAMPLES = "\n\n".join(
@@ -91,8 +90,8 @@ FITTING = "\n\n".join(
         "jaxhydro report results",
         "[bold]What it writes[/bold]",
         "calibration.json (docs/formats.md), simulated.nc, figures. Exit status: 0 done; 2 the input is wrong; 3 not "
-        "converged or "
-        "stopped, or a record is not followed, with what was reached written and marked so; 130 stopped, nothing was written.",
+        "converged or stopped, or a record is not followed; 130 stopped, nothing was written. With 3, what was reached is "
+        "written and marked so.",
     )
 )
 DIAGNOSING = "\n\n".join(
@@ -108,8 +107,8 @@ DIAGNOSING = "\n\n".join(
         "waves only.",
         "[bold]What it writes[/bold]",
         "diagnosis.json (docs/formats.md), simulated.nc, figures. `jaxhydro report` makes one page of them to hand on. "
-        "Exit status: 0 done; 2 the input is wrong; 3 not converged or stopped, with what was reached written and marked so; "
-        "130 stopped, and the same command goes on.",
+        "Exit status: 0 done; 2 the input is wrong; 3 not converged or stopped; 130 stopped, and the same command goes on. "
+        "With 3, what was reached is written and marked so.",
     )
 )
 QUANTIFYING = "\n\n".join(
@@ -121,8 +120,8 @@ QUANTIFYING = "\n\n".join(
         "jaxhydro report uncertainty",
         "[bold]What it writes[/bold]",
         "uncertainty.json (docs/formats.md), figures. `jaxhydro report` makes one page of them to hand on. "
-        "Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was reached written and marked so; 130 stopped, "
-        "nothing was written.",
+        "Exit status: 0 done; 2 the input is wrong; 3 not converged; 130 stopped, nothing was written. With 3, what was "
+        "reached is written and marked so.",
     )
 )
 SWEEPING = "\n\n".join(

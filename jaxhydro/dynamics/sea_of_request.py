@@ -91,8 +91,8 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
     usual = usual_cutoff(4 * math.sqrt(energy), float(model.environment.gravity))
     if asked.order == 2 and cutoff > usual:
         notes.append(
-            f"in a sea this high second order is usually cut off at sqrt(2 g / Hs), --cutoff {usual:.2g} (Stansberg): "
-            "beyond, short waves bind more than they have"
+            f"in a sea this high second order is usually cut off at sqrt(2 g / Hs), --cutoff {usual:.2g} (Stansberg). "
+            "Beyond, short waves bind more than they have"
         )
     if model.cylinders is None and model.conventions.diffraction != "none":
         notes.append("no member of this platform diffracts waves: 1 + Ca everywhere")

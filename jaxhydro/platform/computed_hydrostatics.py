@@ -87,7 +87,7 @@ def _values(
     if hydrostatics.weight == "excluded":
         return values | {f"{key}_buoyancy": stiffness[key] for key in wanted}, []
     message = (
-        f"{hydrostatics.file}: {many} are taken to include the weight, as WAMIT and Capytaine define them; in files made for "
+        f"{hydrostatics.file}: {many} are taken to include the weight, as WAMIT and Capytaine define them. In files made for "
         "OpenFAST they may not: `weight: excluded`"
     )
     return values | {key: stiffness[key] for key in wanted}, [] if hydrostatics.weight else [message]

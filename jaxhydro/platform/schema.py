@@ -194,8 +194,8 @@ class LinearSprings(Schema):
         return (
             f"mooring.lines: {subject} slack at the reference position ({'; '.join(shown)})"
             + (", so nothing holds the platform there. " if every else ", and pulls nothing there. ")
-            + "Lines here are straight, weightless springs: for a catenary take kind: catenary, or kind: stiffness_matrix "
-            "with its stiffness and preload (its pull) at the reference position."
+            + "Lines here are straight, weightless springs. For a catenary take kind: catenary. Or take kind: "
+            "stiffness_matrix with its stiffness and preload (its pull) at the reference position."
         )
 
 

@@ -100,7 +100,7 @@ class TensionTableMooring(Consistent):
             remarks.append(f"mooring.lines: slack at the reference position, and pulling nothing there: {'; '.join(slack)}")
         if beyond:
             remarks.append(
-                "mooring.lines: stretched beyond the table at the reference position, where the tension goes on as steeply "
-                f"as at its end: {'; '.join(beyond)}"
+                f"mooring.lines: stretched beyond the table at the reference position: {'; '.join(beyond)}. There the tension "
+                "goes on as steeply as at the table's end"
             )
         return remarks

@@ -104,7 +104,7 @@ def impossible(setup: Setup) -> dict[State, str]:
 
 
 def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: dict[State, str]) -> Iterator[str]:
-    """Notes on a plan, one sentence each.
+    """Notes on a plan, a sentence or two each.
 
     Args:
         plan: The plan.
@@ -118,8 +118,8 @@ def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: di
         life = sum(case.probability for case in plan.cases if case.state in failing)
         more = f" and {len(failing) - 1} more" if len(failing) > 1 else ""
         yield (
-            f"{len(failing)} of {len(seas)} sea states, {life:.2%} of the life, cannot be, and the runs fail: "
-            f"{named(state)} ({reason}){more}"
+            f"{len(failing)} of {len(seas)} sea states, {life:.2%} of the life, cannot be, and the runs fail. "
+            f"{'They are' if more else 'It is'} {named(state)} ({reason}){more}"
         )
     run = {state: share for state, share in seas.items() if state not in failing}
     yield from _of_band(run, len(seas), plan)
@@ -133,7 +133,7 @@ def _of_band(seas: dict[State, float], total: int, plan: Plan) -> Iterator[str]:
         state = min(cut, key=cut.__getitem__)
         yield (
             f"{_in(len(cut), total)} less than {NOTED_SHARE:.0%} of the spectrum lies from {plan.low:g} to {plan.cutoff:g} Hz, "
-            f"and the rest is left out; least in {named(state)}, {cut[state]:.1%} or "
+            f"and the rest is left out. The share is least in {named(state)}, {cut[state]:.1%} or "
             f"Hs {state.height * cut[state] ** 0.5:.3g} m: see low and cutoff"
         )
 

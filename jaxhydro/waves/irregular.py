@@ -183,7 +183,7 @@ def record_components(
     if separation.mismatch > tolerance:
         raise ValueError(
             f"first and second order miss {separation.mismatch:.2%} of the record after {separation.rounds} rounds, expected "
-            f"below {tolerance:.2%}: take a cutoff below {cutoff:g} Hz, a larger tolerance, or order 1"
+            f"below {tolerance:.2%}. Take a cutoff below {cutoff:g} Hz, a larger tolerance, or order 1"
         )
     return separation.waves
 

@@ -118,7 +118,7 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
 
 def _too_short(highest: float, box: Box) -> str:
     return (
-        f"waves as short as {2 * math.pi / highest:.3g} m in a box of {2 * box.half:.3g} m need more than {MAX_SUPPORTS} "
+        f"waves down to {2 * math.pi / highest:.3g} m in a box of {2 * box.half:.3g} m need more than {MAX_SUPPORTS} "
         f"support wavenumbers: cut the sea off at a lower frequency"
     )
 

@@ -123,7 +123,7 @@ def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> 
     other = replace(result.effects[0], effect="current", degree_of_freedom=None, indistinguishable=())
     for effects, verdict, start in (
         ((doubtful,), "unexplained", "The model lacks something, and no effect"),
-        ((other, doubtful), "found", "The model lacks a current: "),
+        ((other, doubtful), "found", "The model lacks a current. "),
     ):
         write_diagnosis(replace(result, verdict=verdict, effects=effects), tmp_path / verdict, figures=False)
         saved = read_diagnosis(tmp_path / verdict)
@@ -133,7 +133,7 @@ def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> 
         assert said.startswith("Amplitude dependent drag explains more of the fitted tests beside it than it does, and is")
         assert said in Page(write_report(tmp_path / verdict).read_text()).text
         raising = saved.missing.effects[-1].model_copy(update={"in_doubt": "held_out_error"})
-        assert words.describe_alternatives(raising).startswith("With all that was found in the model the tests that were not")
+        assert words.describe_alternatives(raising).startswith("With all that was found in the model, the tests that were not")
         if other in effects:
             assert words.describe_alternatives(saved.missing.effects[0]).startswith(
                 "No other effect that was tried does as well."
@@ -304,7 +304,7 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
         "squared error of held-out tests falls by 61 %",
         "cannot tell it from hysteresis in surge",
         "A test that would tell: a static pull-out",
-        "left unexplained: white",
+        "left unexplained. What is left: white",
         "The test to run next",
         "Coefficients fitted without",
         "91000 ± 3000",

@@ -92,7 +92,7 @@ def test_in_different_units_a_product_is_known() -> None:
     assert known is not None and known.product and known.standard_deviation == pytest.approx(0.03)
     assert known.weights == pytest.approx({"column.Cd_t": 1.0, "linear_damping.B11": 0.4})
     assert known.value == pytest.approx(2.0 * 4e5**0.4)
-    assert "the product column.Cd_t^1.00 linear_damping.B11^0.40 is known to 3 %" in found.weak[0].sentence("these records")
+    assert "The product column.Cd_t^1.00 linear_damping.B11^0.40 is known to 3 %" in found.weak[0].sentence("these records")
 
 
 def test_two_open_directions_of_three_are_told_with_their_one_sum() -> None:
@@ -105,7 +105,7 @@ def test_two_open_directions_of_three_are_told_with_their_one_sum() -> None:
         assert weak.known.standard_deviation == pytest.approx(0.02)
     assert len({fix.label for fix in found.fixes}) == 2
     # what is known is said once, and of what is fixed nothing more
-    assert " | ".join(found.sentences()).count("their weighted sum a.Cd_t") <= 1
+    assert " | ".join(found.sentences()).count("Their weighted sum a.Cd_t") <= 1
     assert found.fixes[0].label not in found.fixes[1].after and len(found.fixes[1].after) == 1
 
 

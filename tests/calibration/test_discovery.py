@@ -345,7 +345,7 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
     if told:
         evidence = under_way.found["mass_properties"].verdict
         assert evidence.refused is None and np.isnan(evidence.bic)  # which is of errors
-        assert under_way.notes[0].startswith("inertia pitch is further from what is declared")
+        assert under_way.notes[0].startswith("inertia pitch is further from the platform file's values")
 
 
 def test_a_decay_that_the_seas_take_away_is_said():

@@ -108,7 +108,7 @@ def test_a_test_is_about_what_moves_in_it():
     worst = replace(left_of("heave")[0], relative=0.95)
     assert unexplained_motions(under_way, [*left_of("surge"), worst])[0] is worst  # type: ignore[arg-type]
     assert unexplained_note([Candidate("hidden_oscillator", "heave", ())], [worst]).startswith(
-        "with a hidden oscillator in heave in the model 95 % of heave is left in sea: what acts is not, or not only,"
+        "with a hidden oscillator in heave in the model, 95 % of heave is left in sea. Something else acts instead, or as well."
     )
 
 
@@ -207,7 +207,7 @@ def test_a_decay_that_begins_in_motion_is_told_where_that_matters():
 
     assert told(rubs) == []
     (said,) = told(rubs, swings)
-    assert said.startswith("late begins in motion, and a hidden oscillator in pitch as if")
+    assert said.startswith("late begins in motion. A hidden oscillator in pitch has a memory")
 
 
 def test_no_step_is_taken_to_where_a_test_diverges_that_is_not_fitted(monkeypatch):

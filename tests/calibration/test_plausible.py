@@ -90,7 +90,9 @@ def test_what_is_odd_is_a_warning(tmp_path):
     told = [one for one in small.findings if "moves by 0.00" in one.message]
     assert {(one.test, one.severity) for one in told} == {(f"heave-{i}", "warning") for i in (1, 2, 3)}
     units = [one for one in small.findings if one not in told]
-    together = "all releases in heave are as if 1000 times too small: millimetres and metres mixed up (`channels.heave.unit`)?"
+    together = (
+        "all releases in heave are as if 1000 times too small. Are millimetres and metres mixed up (`channels.heave.unit`)?"
+    )
     assert {one.message for one in units} == {"the file states m for column 'heave_m', and the manifest mm", together}
     noisy = load_campaign(stated(tmp_path / "noisy", noise={"surge": 3.0}))
     assert ["noise is stated as 3 m" in one.message for one in noisy.findings] == 3 * [True]
@@ -99,7 +101,7 @@ def test_what_is_odd_is_a_warning(tmp_path):
 def test_a_sensor_with_a_zero_of_its_own_is_a_warning(tmp_path):
     folder = with_motion(tmp_path / "campaign", 2, lambda heave: heave + 2.5)
     (found,) = load_campaign(folder).findings
-    assert found.channel == "heave" and found.message.startswith("decays end 2.5 m from where the declared platform floats")
+    assert found.channel == "heave" and found.message.startswith("decays end 2.5 m from the equilibrium of the platform file")
 
 
 ROWS = "\n".join(f"{0.1 * i:.2f},{0.3 * i:.2f},{-0.01 * i:.3f}" for i in range(30)) + "\n"

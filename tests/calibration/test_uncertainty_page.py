@@ -99,7 +99,7 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(tmp_path: Path) -> No
         "What the intervals mean",
         "What a 90 % interval means",
         "about 90 in 100",
-        "does not mean: that the model is right",
+        "does not mean that the model is right",
         "the records do not determine",
         "Figures",
         "draws of two",

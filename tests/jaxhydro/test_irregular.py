@@ -352,7 +352,7 @@ def test_a_record_too_steep_for_second_order() -> None:
     found = separated_record(TIMES, record, WATER, heading=0.5, **BAND)
     assert 1e-4 < found.mismatch <= 1.5 and found.rounds <= 30
     assert bool(jnp.isfinite(found.waves.amplitude).all())
-    with pytest.raises(ValueError, match=r"first and second order miss .* take a cutoff below 0\.2 Hz"):
+    with pytest.raises(ValueError, match=r"first and second order miss .* Take a cutoff below 0\.2 Hz"):
         record_components(TIMES, record, WATER, heading=0.5, **BAND)
 
 

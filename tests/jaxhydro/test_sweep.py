@@ -228,7 +228,9 @@ def test_sea_states_that_cannot_be_are_told_before_they_run() -> None:
     """Once each, whatever their headings and seeds; nothing else is noted of them."""
     rows = [{"hs": 2, "tp": 8, "probability": 90}, {"hs": 30, "tp": 9, "probability": 4}, {"hs": 1, "tp": 1, "probability": 6}]
     (note,) = noted(plan(scatter=rows, headings=[0, 40], cutoff=0.3), jh.load_model("volturnus-s"))
-    assert note.startswith("2 of 3 sea states, 10.00% of the life, cannot be, and the runs fail: Hs 30 m, Tp 9 s (expect")
+    assert note.startswith(
+        "2 of 3 sea states, 10.00% of the life, cannot be, and the runs fail. They are Hs 30 m, Tp 9 s (expect"
+    )
     assert "break above" in note and note.endswith(" and 1 more")
 
 

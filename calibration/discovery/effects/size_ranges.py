@@ -87,7 +87,7 @@ ROBERTSON = "Robertson et al. 2020, Ocean Engineering 195, 106605"
 MASS = "IMO MSC.1/Circ.1195, 2.2.3: ballasted within 1 %; twice that, as published masses of one FOCAL hull differ by 1.2 %."
 INERTIA = "IMO MSC.1/Circ.1200, 4.3.3: radius of gyration or natural period within 2 %, so moment of inertia within 4 to 5 %."
 CENTRE = (
-    f"{JUDGEMENT}7 mm at 1:70, as two published centres of one as-built FOCAL hull differ by 0.73 m; {ROBERTSON} find "
+    f"{JUDGEMENT}7 mm at 1:70, as two published centres of one as-built FOCAL hull differ by 0.73 m. {ROBERTSON}, find "
     "responses most sensitive to it and to mooring stiffness."
 )
 TRIM = "IMO MSC.1/Circ.1195, 2.2.3: trim within 0.2 degrees, which is 0.1 m where the metacentre is 29 m above the centre."
@@ -103,7 +103,7 @@ HYSTERESIS = JUDGEMENT + "lines and cables lose less than a sixth of the largest
 OFFSET = JUDGEMENT + "half the largest excursion, 1 % of the length or 1 degree would have been seen when records were zeroed."
 MOORING = JUDGEMENT + "a declared stiffness is off by half at the largest excursion at most, a catenary's or taut line's alike."
 HYDROSTATICS = (
-    "Barrass and Derrett, Ship Stability for Masters and Mates: with BM = 2 GM the cubic term of a wall-sided hull is below "
+    "Barrass and Derrett, Ship Stability for Masters and Mates. With BM = 2 GM the cubic term of a wall-sided hull is below "
     "0.3 of the linear one up to 30 degrees."
 )
 DRIFT = "Maruo 1960 in Faltinsen 1990, chapter 5: waves all sent back drift by rho g/2 times width and squared amplitude."

@@ -160,8 +160,8 @@ def _diffracting(source: ExportSource, pieces: Sequence[Piece], notes: MemberNot
             notes.add(piece.number, "diffraction", Treatment.APPROXIMATED, text)
         else:
             text = (
-                "HydroDyn has MCF for upright circles through still water, as deep as their radius, of one diameter within "
-                "10 %: these have Morison's 1 + Ca in place of diffraction."
+                "HydroDyn has MCF only for upright circles through still water, at least as deep as their radius, and for one "
+                "diameter within 10 %. These members have Morison's 1 + Ca in place of diffraction."
             )
             notes.add(piece.number, "diffraction", Treatment.LEFT_OUT, text)
     return diameter, chosen
@@ -196,8 +196,8 @@ def _tell(source: ExportSource, piece: Piece, notes: MemberNotes) -> None:
         notes.add(piece.number, "Ca_z, Cd_z", Treatment.TAKEN, text)
     if member.floats and (piece.ends[:, 2] > 0.0).all():
         text = (
-            "Its axis is above still water, and HydroDyn loads nodes under water alone: in still water it has no added mass "
-            "and no drag in OpenFAST."
+            "Its axis is above still water, and HydroDyn loads nodes under water alone. So in still water it has no added "
+            "mass and no drag in OpenFAST."
         )
         notes.add(piece.number, "coefficients", Treatment.LEFT_OUT, text)
     elif member.pierced:
