@@ -60,8 +60,8 @@ class PopulationSearch(abc.ABC):
 
     def run(self, task: Task, random: np.random.Generator) -> None:
         """Search, the releases fitted first where the task has none."""
-        if task.own is None:
-            task.own = fit_releases(task)
+        if task.releases is None:
+            task.releases = fit_releases(task)
         self.evolve(task, random)
 
 

@@ -55,7 +55,7 @@ def handicap(values: dict[str, float]) -> float:
 
     problem, records = set_up_search(campaign())
     task = Task(problem, records, None, Budget())
-    task.own = fit_releases(task)
+    task.releases = fit_releases(task)
     x = [p.transform.inverse(values[p.label]) for p in problem.space.free]
     return float(task.simulate(np.asarray(jnp.array([x])))[0])
 

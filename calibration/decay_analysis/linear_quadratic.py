@@ -1,20 +1,20 @@
 """Decay analysis: logarithmic decrement, linear and quadratic (P-Q) damping.
 
-The law is that of one degree of freedom, x'' + p x' + q x'|x'| + w^2 x = 0, p in 1/s, q in 1/m or 1/rad. Between two
-successive extremes A0, A1 the energy w^2 (A0^2 - A1^2)/2 per unit mass is lost to damping. Along x = a cos wt that is, over
-half a cycle, pi w a^2 p/2 + 4 w^2 a^3 q/3; with a = (A0 + A1)/2, A0^2 - A1^2 = 2 a (A0 - A1) and A0 - A1 = a ln(A0/A1),
+The law is x'' + p x' + q x'|x'| + w^2 x = 0, of one degree of freedom, with p in 1/s and q in 1/m or 1/rad. Between two
+successive extremes A0, A1 the energy w^2 (A0^2 - A1^2)/2 per unit mass is lost to damping. Along x = a cos wt the loss over
+half a cycle is pi w a^2 p/2 + 4 w^2 a^3 q/3. With a = (A0 + A1)/2, A0^2 - A1^2 = 2 a (A0 - A1) and A0 - A1 = a ln(A0/A1),
 
     ln(A0/A1) = (t1 - t0)/2 p + 4/3 a q,        or for whole cycles        2/T ln(A0/A2) = p + 16/(3 T) a q,
 
 the linear-quadratic fit of basin practice (Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 7). It is
 equivalent linearisation too, since 16/(3 T) = 8 w/(3 pi).
 
-It is exact for q = 0, whatever p is, since the period is the measured, damped one. Otherwise its relative error is of
-second order in the decrement: time run backwards changes the sign of p and q and swaps A0 and A1, which leaves `a` and
-t1 - t0 as they are, so ln(A0/A1) is odd in (p, q). For L, the largest
-ln(A0/A1) of a half cycle, between 0.1 and 1, and p up to zeta = 0.16, solutions of the equation give a q that is low by up
-to 0.08 L^2 of itself (0.65 L^2 over whole cycles) and a p that is high by up to 0.005 L^2 w (0.02 L^2 w). Extremes read off a
-record add their own error where it starts or ends in the middle of a half cycle: some 1e-4 of p in clean data.
+It is exact for q = 0, whatever p is, since the period is the measured, damped one. Otherwise its relative error is of second
+order in the decrement. Time run backwards changes the sign of p and q and swaps A0 and A1. That leaves `a` and t1 - t0 as they
+are, so ln(A0/A1) is odd in (p, q). The size of the error comes from solutions of the equation, with L the largest ln(A0/A1) of
+a half cycle. L is between 0.1 and 1, and p goes up to zeta = 0.16. Then q is low by up to 0.08 L^2 of itself (0.65 L^2 over
+whole cycles), and p is high by up to 0.005 L^2 w (0.02 L^2 w). Extremes read off a record add their own error where it starts
+or ends within a half cycle: some 1e-4 of p in clean data.
 """
 
 from __future__ import annotations
@@ -123,7 +123,9 @@ class LinearQuadratic:
         Returns:
             B_lin and B_quad.
         """
-        return tuple(EstimateWithInterval(*(inertia * number for number in one)) for one in (self.linear, self.quadratic))  # type: ignore
+        return tuple(
+            EstimateWithInterval(*(inertia * number for number in estimate)) for estimate in (self.linear, self.quadratic)
+        )  # type: ignore
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,8 +181,8 @@ def decrements(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tupl
 def linear_quadratic(pairs: Decrements) -> LinearQuadratic:
     """Fit linear and quadratic damping to decrements.
 
-    The law is ln(A0/A1) = (t1 - t0)/2 p + 8/3 c a q, c = 1/2 for half cycles and 1 for whole ones: see the module's
-    docstring. All extremes have one standard deviation. A decrement then has a variance of 1/A0^2 + 1/A1^2, and neighbours
+    The law is ln(A0/A1) = (t1 - t0)/2 p + 8/3 c a q, with c = 1/2 for half cycles and 1 for whole ones (see the module).
+    All extremes have one standard deviation. A decrement then has a variance of 1/A0^2 + 1/A1^2, and neighbours
     share an extreme, with a correlation near -1/2. Intervals are by Student's t, since the standard deviation is estimated.
 
     Args:
@@ -281,9 +283,9 @@ def classical(
         )
     start = half.first[skip]
     half, positive, negative = (
-        Decrements(one.extreme_times, one.heights, one.first[late], one.second[late], one.cycles)
-        for one in (half, *sides)
-        for late in [one.first >= start]
+        Decrements(pairs.extreme_times, pairs.heights, pairs.first[late], pairs.second[late], pairs.cycles)
+        for pairs in (half, *sides)
+        for late in [pairs.first >= start]
     )
     fit = linear_quadratic(half)
     crests, troughs = (linear_quadratic(side) if len(side.first) >= MIN_DECREMENTS else None for side in (positive, negative))

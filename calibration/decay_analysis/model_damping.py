@@ -1,6 +1,6 @@
 """Linear and quadratic damping of a model in one motion, by drag coefficient.
 
-M x'' + B_lin x' + B_quad x'|x'| + C x = 0, so p = B_lin/M and q = B_quad/M of `classical`, M with added mass.
+The equation is M x'' + B_lin x' + B_quad x'|x'| + C x = 0, M with added mass. So p = B_lin/M and q = B_quad/M of `classical`.
 """
 
 from collections.abc import Mapping
@@ -62,15 +62,18 @@ def motion_shape(model: Model, dof: str, position: Float[Array, "6"] | None = No
     """
     if dof not in DOFS:
         raise KeyError(f"no degree of freedom {dof!r}; there are: {', '.join(DOFS)}")
-    modes, place = natural_modes(model, position), DOFS.index(dof)
-    if (at := modes.number(dof)) is not None:
-        rates = modes.shape[at] / widths(model)
-        return rates / rates[place]
+    modes, index = natural_modes(model, position), DOFS.index(dof)
+    if (number := modes.number(dof)) is not None:
+        rates = modes.shape[number] / widths(model)
+        return rates / rates[index]
     raise ValueError(f"expected a natural mode mainly of {dof}, found none: nothing restores it")
 
 
 def _resistance(model: Model, position: Array, rates: Array, speeds: Array) -> Array:
-    """(k,) generalised force against the motion, its part that is odd in the velocity; the rest does no work in a cycle."""
+    """(k,) generalised force against the motion, its part that is odd in the velocity.
+
+    The rest does no work in a cycle.
+    """
 
     def force(speed: Array) -> Array:
         velocity = model.body_velocity(position, speed * rates)
@@ -131,8 +134,8 @@ def model_damping(
     position = equilibrium(model) if position is None else position
     numbers, misfit, over, slopes = _damping(model, jnp.asarray(position), jnp.asarray(rates))
     if misfit > 1e-6:
-        found = ", ".join(f"{float(b):.6g} at {v:g}" for b, v in zip(over, SPEEDS))
-        raise ValueError(f"expected linear and quadratic damping in {dof}, found force over speed {found} m/s or rad/s")
+        ratios = ", ".join(f"{float(b):.6g} at {v:g}" for b, v in zip(over, SPEEDS))
+        raise ValueError(f"expected linear and quadratic damping in {dof}, found force over speed {ratios} m/s or rad/s")
     inertia, linear, quadratic = (float(number) for number in numbers)
     drag = {k: float(b) for k, b in slopes.items() if ".Cd_" in k or k.startswith("quadratic_damping.")}
     return ModelDamping(inertia, linear, quadratic, drag)

@@ -40,21 +40,21 @@ def unexplained_period_change(
         noise: Standard deviation of the noise on `measured` (m or rad).
 
     Returns:
-        The periods, where the measured one changes otherwise than the simulated one by 0.1 % of it or more, and the slope of
-        their difference over the amplitude is four standard errors or more. Else None.
+        The periods, or None where the difference is small. The measured period has to change otherwise than the simulated one
+        by 0.1 % of it or more. The slope of their difference over the amplitude has to be four standard errors or more.
     """
-    cycles, other = decay_cycles(time, measured, noise), decay_cycles(time, simulated, noise)
-    count = min(len(cycles.period), len(other.period)) // 2
+    cycles, simulated_cycles = decay_cycles(time, measured, noise), decay_cycles(time, simulated, noise)
+    count = min(len(cycles.period), len(simulated_cycles.period)) // 2
     if count < MIN_CYCLES:
         return None
     # crests and troughs of a motion off zero alternate: whole cycles do not
     real, model, amplitude = (
         half_cycles[: 2 * count].reshape(count, 2).mean(axis=1)
-        for half_cycles in (cycles.period, other.period, cycles.amplitude)
+        for half_cycles in (cycles.period, simulated_cycles.period, cycles.amplitude)
     )
-    found = PeriodChange(*(float(half.mean()) for one in (real, model) for half in np.split(one, [count // 2])))
-    change = (found.large - found.small) - (found.simulated_large - found.simulated_small)
+    periods = PeriodChange(*(float(half.mean()) for series in (real, model) for half in np.split(series, [count // 2])))
+    change = (periods.large - periods.small) - (periods.simulated_large - periods.simulated_small)
     slope = scipy.stats.linregress(amplitude, real - model)
     if abs(change) < MIN_CHANGE * float(real.mean()) or abs(slope.slope) < MIN_DEVIATIONS * slope.stderr:
         return None
-    return found
+    return periods

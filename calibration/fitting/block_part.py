@@ -1,4 +1,4 @@
-"""Tests in waves within a fit by blocks (multiple shooting): errors, weights, jumps from block to block."""
+"""Tests in waves within a fit by blocks (multiple shooting): errors, weights and jumps between blocks."""
 
 from collections.abc import Callable
 from typing import ClassVar
@@ -24,12 +24,12 @@ MIN_POOLED_ERROR = 1e-6  # of a motion, over its standard deviation: that of a r
 class BlockPart(AbstractPart):
     """Tests in waves within a fit by blocks.
 
-    A motion of a test is one observation, and all have one error. The prior of a block's own unknowns weighs as one of its
-    share of the test, that of a constant as one.
+    Each motion of a test counts as one observation, and all motions have the same error. The prior of a block's own
+    unknowns weighs as one observation times the block's share of the test. The prior of a constant weighs as one.
 
     Attributes:
-        set_up: The residuals of a model, in seas prepared for its motion.
-        groups: Residuals by motion of a test where errors were last estimated.
+        set_up: Function from a model to its residuals, in seas prepared for its motion.
+        groups: Residuals by motion of a test, where errors were last estimated.
     """
 
     kind: ClassVar[Kind] = "waves"
@@ -49,13 +49,13 @@ class BlockPart(AbstractPart):
         return unknowns.shared[: len(self.problem.space.free)]
 
     def share(self) -> np.ndarray:
-        """Of every block, how much of its test it is."""
-        counts = np.concatenate([np.asarray((one.factor > 0).any(axis=1).sum(axis=1)) for one in self.problem.blocks])
+        """Share of each block in the samples of its test (b,)."""
+        counts = np.concatenate([np.asarray((blocks.factor > 0).any(axis=1).sum(axis=1)) for blocks in self.problem.blocks])
         test = np.asarray(self.problem.piece).min(axis=1)
-        return counts / np.array([counts[test == one].sum() for one in test])
+        return counts / np.array([counts[test == index].sum() for index in test])
 
     def begin_round(self, unknowns: Unknowns) -> None:
-        """What is not fitted starts from the continuous run of the present coefficients."""
+        """Start motions that are not fitted from the continuous run with the present coefficients."""
         self.problem = self.problem.continued(self.parameters(unknowns))
 
     def estimate(self, unknowns: Unknowns) -> ResidualErrors:
@@ -64,7 +64,7 @@ class BlockPart(AbstractPart):
         present = np.concatenate(
             [
                 np.pad(f, ((0, 0), (0, 0), (0, residual.shape[2] - f.shape[2])))
-                for f in (np.asarray(one.factor) > 0 for one in self.problem.blocks)
+                for f in (np.asarray(blocks.factor) > 0 for blocks in self.problem.blocks)
             ]
         )
         self.groups = [residual[(piece == i)[..., None] & present] for i in range(self.problem.observations)]
@@ -75,7 +75,10 @@ class BlockPart(AbstractPart):
         return ResidualErrors(same * max(error, MIN_POOLED_ERROR) ** 2, same)
 
     def weigh(self, errors: ResidualErrors) -> np.ndarray:
-        """What multiplies the squares, by block and channel; the last is the prior of its own unknowns."""
+        """Weights of the squares, by block and channel.
+
+        The last column weighs the prior of the block's own unknowns.
+        """
         return np.column_stack([super().weigh(errors), self.share()])
 
     def mean_squares(self) -> tuple[np.ndarray, np.ndarray]:
@@ -91,18 +94,19 @@ class BlockPart(AbstractPart):
         return True
 
     def covariance_parts(self, unknowns: Unknowns, ridge: np.ndarray) -> WeightedProducts:
-        """One group for each motion of a test, with the blocks' own unknowns eliminated; then their priors, and the constants'.
+        """Groups for `sandwich_covariance`, with the blocks' own unknowns eliminated.
 
-        Variances are what is left after what all unknowns and their priors took.
+        There is one group for each motion of a test. Then there is one for the priors of own unknowns of each test, and one for
+        the priors of the constants. Variances are raised for the share that all unknowns and their priors have absorbed.
         """
         assert self.products is not None, "nothing has been minimised yet"
         problem, weight, piece = self.problem, self.weight, np.asarray(self.problem.piece)
         p, m = len(problem.space.free), problem.observations
         bread = np.einsum("bckl,bc->bkl", self.products[..., :-1, :-1], weight)
-        own = bread.shape[-1] - p - m
+        own_count = bread.shape[-1] - p - m
         motions_only = np.einsum("bckl,bc->bkl", self.products[:, :-1], weight[:, :-1])
         data = gauss_newton_matrix(motions_only, p + m)
-        prior = np.diag(np.concatenate([ridge**2, np.repeat(weight[:, -1], own)]))
+        prior = np.diag(np.concatenate([ridge**2, np.repeat(weight[:, -1], own_count)]))
         # what is there for all channels but no data stays as its prior has it
         used = float(np.trace(np.linalg.solve(data + prior, data)))
         total = sum(len(g) / correlated_samples(g) for g in self.groups)
@@ -123,21 +127,24 @@ class BlockPart(AbstractPart):
 
     @property
     def jumps(self) -> dict[str, float]:
-        """Root mean square jump from the end of a block to the start of the next, over the motion's standard deviation."""
+        """Root mean square jump between consecutive blocks, by degree of freedom.
+
+        It is relative to the standard deviation of the motion.
+        """
         piece = np.asarray(self.problem.piece)
         span = np.concatenate([np.asarray(blocks.span) for blocks in self.problem.blocks])
         last, first = np.asarray(self.shot.last), np.asarray(self.shot.first)
         wide = np.append(np.asarray(self.problem.wide), np.inf)
-        found = {}
+        jumps = {}
         for j, dof in enumerate(self.problem.dofs):
-            at = np.flatnonzero((span > 0) & (piece[:, j] < len(wide) - 1))
-            if len(at):
-                jump = (first[at + 1, j] - last[at, j]) / wide[piece[at, j]]
-                found[DOFS[dof]] = float(np.sqrt(np.mean(jump**2)))
-        return found
+            index = np.flatnonzero((span > 0) & (piece[:, j] < len(wide) - 1))
+            if len(index):
+                jump = (first[index + 1, j] - last[index, j]) / wide[piece[index, j]]
+                jumps[DOFS[dof]] = float(np.sqrt(np.mean(jump**2)))
+        return jumps
 
     def notes(self) -> tuple[str, ...]:
-        said = listed([f"{percent(jump)} in {dof}" for dof, jump in self.jumps.items()])
+        sizes = listed([f"{percent(jump)} in {dof}" for dof, jump in self.jumps.items()])
         blocks = f"{len(self.problem.piece)} blocks that start anew"
-        jumps = f"From one to the next the simulated motion jumps by {said} of its standard deviation (root mean square)"
+        jumps = f"From one to the next the simulated motion jumps by {sizes} of its standard deviation (root mean square)"
         return (f"{blocks}. {jumps}. Large jumps say what the model lacks",)

@@ -5,5 +5,5 @@ import os
 
 def cores() -> int:
     """Cores that this process may use."""
-    mine = getattr(os, "sched_getaffinity", None)  # not on macOS
-    return len(mine(0)) if mine else os.cpu_count() or 1
+    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS
+    return len(affinity(0)) if affinity else os.cpu_count() or 1

@@ -83,22 +83,25 @@ def prepare_fit(
     begin: dict[str, float] | None = None,
     report: Callable[[str, int, float, float], None] = lambda *_: None,
 ) -> Fit:
-    """A calibration to the decays before its first step. Arguments and InputError are those of `calibrate`."""
+    """Set up a calibration to decays, before its first step.
+
+    Arguments and InputError are those of `calibrate`.
+    """
     source = str(campaign.folder / "campaign.yaml")
     records = [record for record in campaign.used("fit") if record.kind == "decay"]
     if not records:
-        found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
+        uses = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
         waves = any(r.kind in IN_WAVES and r.use == "fit" for r in campaign.records)
         hint = "Tests in waves are fitted by `jaxhydro calibrate --tests waves`, `calibrate_in_waves`." if waves else ""
-        raise InputError(source, [Wrong("tests", "at least one decay test marked `use: fit`", found, hint)])
+        raise InputError(source, [Wrong("tests", "at least one decay test marked `use: fit`", uses, hint)])
     for record in records:
         for channel in set(record.values) & set(DOFS[3:]):
             if (largest := float(np.abs(record.values[channel]).max())) > np.pi / 2:
-                where, found = f"tests, {record.id}, channel {channel}", f"{np.degrees(largest):.3g} deg"
-                raise InputError(source, [Wrong(where, "angles below 90 deg", found, "Is the unit right?")])
-    declared = campaign.model
-    labels = labels_of(campaign, declared, [str(record.degree_of_freedom) for record in records], free)
-    first = declared.with_values(start or {})
+                where, angle = f"tests, {record.id}, channel {channel}", f"{np.degrees(largest):.3g} deg"
+                raise InputError(source, [Wrong(where, "angles below 90 deg", angle, "Is the unit right?")])
+    baseline = campaign.model
+    labels = labels_of(campaign, baseline, [str(record.degree_of_freedom) for record in records], free)
+    first = baseline.with_values(start or {})
     problem = set_up_decays(first, campaign, records, space_of(campaign, labels, first))
     x = jnp.array([p.transform.inverse((begin or {}).get(p.label, p.start)) for p in problem.space.free])
     return fit_of_decays(problem, records, x, report)
@@ -107,17 +110,17 @@ def prepare_fit(
 def fit_of_decays(
     problem: DecayProblem, records: Sequence[Record], x: Float[Array, " p"], report: Report = lambda *_: None
 ) -> Fit:
-    """A fit to decays that begins at coordinates (p,), and from a first guess of the releases."""
+    """Fit to decays that begins at coordinates (p,), and from a first guess of the releases."""
     unknowns = Unknowns(jnp.asarray(x), first_guess(records, problem.data))
     return Fit([DecayPart(problem, records)], unknowns, report, lambda fit: fit.decays.objective())
 
 
-def labels_of(campaign: Campaign, declared: Model, moved: Sequence[str], free: Sequence[str] | None) -> tuple[str, ...]:
+def labels_of(campaign: Campaign, baseline: Model, moved: Sequence[str], free: Sequence[str] | None) -> tuple[str, ...]:
     """Labels of the free parameters.
 
     Args:
         campaign: The campaign.
-        declared: The model before the fit.
+        baseline: The model before the fit.
         moved: Released motions, whose parameters are free by default.
         free: Labels and patterns in place of the manifest's; None: the manifest's.
 
@@ -125,7 +128,7 @@ def labels_of(campaign: Campaign, declared: Model, moved: Sequence[str], free: S
         InputError: There is no free parameter.
     """
     source, wish = str(campaign.folder / "campaign.yaml"), campaign.manifest.calibrate
-    labels = match_free_labels(declared, moved, wish.free if free is None else free, wish.fixed, source)
+    labels = match_free_labels(baseline, moved, wish.free if free is None else free, wish.fixed, source)
     if not labels:
         none = f"none: the platform declares nothing that acts on {', '.join(sorted(set(moved)))}"
         raise InputError(source, [Wrong("calibrate.free", "at least one free parameter", none)])
@@ -152,37 +155,37 @@ def space_of(
     return parameter_space(begin, labels, dict(wish.bounds), {**(priors or {}), **stated}, source)
 
 
-def conclude(campaign: Campaign, declared: Model, fit: Fit, seconds: float) -> Calibration:
-    """The result of a fit: parameters with their standard deviations, and all decay tests with the fitted model."""
+def conclude(campaign: Campaign, baseline: Model, fit: Fit, seconds: float) -> Calibration:
+    """Result of a fit: parameters with standard deviations, and all decay tests with the fitted model."""
     uncertainty = fit.uncertainty(source_of(fit.decays.records))
-    lost = records_not_followed(fit.decays.tests, declared)
-    tests = [*fit.decays.tests, *held_out(campaign, declared, fit.model)]
+    lost = records_not_followed(fit.decays.tests, baseline)
+    tests = [*fit.decays.tests, *held_out(campaign, baseline, fit.model)]
     return calibration_of(campaign, fit, uncertainty, tests, seconds, lost=lost, first=period_remarks(tests))
 
 
-def held_out(campaign: Campaign, declared: Model, model: Model) -> list[TestFit]:
+def held_out(campaign: Campaign, baseline: Model, model: Model) -> list[TestFit]:
     """Decays marked `holdout`, simulated with the model after and before the fit.
 
     Releases and offsets of sensors are fitted to each record; coefficients stay.
 
     Args:
         campaign: The campaign.
-        declared: The model before the fit.
+        baseline: The model before the fit.
         model: The calibrated model.
     """
     held = [record for record in campaign.used("holdout") if record.kind == "decay"]
     if not held:
         return []
     empty = ParameterSpace(())
-    other = set_up_decays(model, campaign, held, empty)
-    judge = fit_of_decays(other, held, jnp.zeros(0))
+    problem = set_up_decays(model, campaign, held, empty)
+    judge = fit_of_decays(problem, held, jnp.zeros(0))
     weight = judge.decays.record_weights(np.ones(len(held)))
     minimise_window(judge, "held-out records", weight, judge.decays.ends, 1e-4, (1.0, 1.0))
-    return series_of(other, held, judge.unknowns, set_up_decays(declared, campaign, held, empty))
+    return series_of(problem, held, judge.unknowns, set_up_decays(baseline, campaign, held, empty))
 
 
 def set_up_decays(model: Model, campaign: Campaign, records: Sequence[Record], space: ParameterSpace) -> DecayProblem:
-    """The fixed part of a calibration of `model` to decay records."""
+    """Set up the residuals of a model against decay records."""
     periods = natural_modes(model).period
     step = float(periods.min()) / STEPS_PER_PERIOD
     # a model that starts with periods far too long would step too far for the true ones
@@ -209,14 +212,14 @@ def minimise_window(
     Args:
         fit: A fit to decays.
         stage: Name of the stage.
-        weight: What multiplies the squares (r, c).
+        weight: Weights of the squares (r, c).
         until: End of the window (r,) in s.
         tolerance: As of `Fit.minimise`.
         fraction: As of `Fit.minimise`.
         samples: Number of independent observations; None for those of the window.
 
     Returns:
-        Whether it ended of its own.
+        Whether it ended before the limit of iterations.
     """
     decays = fit.decays
     # in units of the cost so far, so that damping and ridge mean the same in every stage
@@ -227,7 +230,12 @@ def minimise_window(
 
 
 def run_fit(fit: Fit, near: bool = False) -> None:
-    """The stages of a fit to decays; where `near`, no more than brings it near."""
+    """Run the stages of a fit to decays.
+
+    Args:
+        fit: The fit.
+        near: Whether to stop after the first stage on whole records, which brings the fit near its end.
+    """
     decays = fit.decays
     data, records = decays.problem.data, decays.records
     period, start = 2 * np.pi / np.asarray(data.pace), np.asarray(data.time[:, 0])

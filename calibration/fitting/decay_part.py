@@ -60,15 +60,16 @@ class DecayPart(AbstractPart):
         return float(np.sum(independent_observations(self.problem.data)))
 
     def window(self, cycles: float) -> np.ndarray:
-        """End of the first so many cycles of the released motion (r,) in s."""
+        """End of the first `cycles` cycles of the released motion (r,) in s."""
         data = self.problem.data
         return np.minimum(np.asarray(data.time[:, 0]) + cycles * 2 * np.pi / np.asarray(data.pace), self.ends)
 
     def record_weights(self, factor: np.ndarray, until: np.ndarray | None = None) -> np.ndarray:
-        """What multiplies the squares (r, c): with `factor` 1 the sum over records of (RMSE / spread)^2.
+        """Weights of the squares (r, c).
 
-        The other channels of a record count on the same footing as its scored one, in metres of the hull (an angle times the
-        radius of gyration): they say how it was released, and are not judged by their own small spread.
+        With `factor` 1 the weighted sum is the sum over records of (RMSE / spread)^2. The other channels of a record tell how
+        it was released. They count on the footing of the scored one, in metres of the hull (an angle times the radius of
+        gyration), and not by their own small spread.
 
         Args:
             factor: Factor of every record (r,).
@@ -113,15 +114,19 @@ class DecayPart(AbstractPart):
     def weigh(self, errors: ResidualErrors) -> np.ndarray:
         stated = np.array([record.test.weight for record in self.records])
         variance = errors.variance * errors.inflation
-        known = np.where(self.scored, self.samples * self.spread**2 / variance, 0.0).sum(axis=1)
-        return self.record_weights(stated * known)
+        precision = np.where(self.scored, self.samples * self.spread**2 / variance, 0.0).sum(axis=1)
+        return self.record_weights(stated * precision)
 
     def covariance_parts(self, unknowns: Unknowns, ridge: np.ndarray) -> WeightedProducts:
         assert self.products is not None, "nothing has been minimised yet"
         return self.products, self.weight, *(self.errors or self.left_errors(self.series(unknowns)))
 
     def left_errors(self, tests: Sequence[TestFit]) -> ResidualErrors:
-        """Errors of the residuals that a finished fit left, and whose series these are."""
+        """Errors of the residuals that a finished fit left.
+
+        Args:
+            tests: Series of the fit; those of its records come first.
+        """
         data, products = self.problem.data, self.products
         assert products is not None, "nothing has been minimised yet"
         samples = np.maximum(np.asarray(data.present).sum(axis=-1), 1)
@@ -131,14 +136,14 @@ class DecayPart(AbstractPart):
                 inflation[i, data.dofs.index(DOFS.index(series.channel))] = correlated_samples(
                     series.simulated - series.measured
                 )
-        own = (products.shape[-1] - 1) / len(data.dofs)
-        return ResidualErrors(products[..., -1, -1] / np.maximum(samples - own, 1), inflation)
+        unknowns_per_channel = (products.shape[-1] - 1) / len(data.dofs)
+        return ResidualErrors(products[..., -1, -1] / np.maximum(samples - unknowns_per_channel, 1), inflation)
 
 
 def independent_observations(data: DecayData) -> np.ndarray:
-    """Number of independent observations in the window of each record: four for every cycle of the released motion.
+    """Number of independent observations in the window of each record (r,).
 
-    It holds where residuals are the model's error, not noise.
+    There are four in every cycle of the released motion. This holds where residuals are the model's error, not noise.
 
     Args:
         data: The records.
@@ -147,11 +152,14 @@ def independent_observations(data: DecayData) -> np.ndarray:
 
 
 def scored_channels(records: Sequence[Record], data: DecayData) -> tuple[np.ndarray, np.ndarray]:
-    """Whether each channel of each record counts in the objective, and its standard deviation, (record, channel).
+    """Channels that count in the objective, and the standard deviation of every channel.
 
     Args:
         records: The records.
         data: The records as arrays.
+
+    Returns:
+        Whether each channel of each record counts (r, c), and its standard deviation (r, c) in m, rad.
     """
     counts = np.zeros((len(records), len(data.dofs)), dtype=bool)
     spread = np.ones((len(records), len(data.dofs)))
@@ -176,7 +184,14 @@ def _motions(problem: DecayProblem, unknowns: Unknowns, x):
 def series_of(
     problem: DecayProblem, records: Sequence[Record], unknowns: Unknowns, before: DecayProblem | None = None
 ) -> list[TestFit]:
-    """Every record measured against simulated. `before` is the same with the model that the calibration started from."""
+    """Measured and simulated series of every record.
+
+    Args:
+        problem: Residuals of the calibrated model.
+        records: The records.
+        unknowns: Coordinates that the fit reached.
+        before: The same with the model that the calibration started from; None: `problem`.
+    """
     data = problem.data
     after = np.asarray(_motions(problem, unknowns, unknowns.shared))
     earlier = problem if before is None else before

@@ -1,4 +1,4 @@
-"""A fit under way: residuals of any kinds, the unknowns reached so far, covariance, rounds of error estimates."""
+"""A fit under way: residuals of any kinds, unknowns, covariance, rounds of error estimates."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -36,7 +36,7 @@ class Fit:
         width: Standard deviations of these priors.
         ridge: Square roots of the priors' weights.
         iterations: Number of iterations so far.
-        converged: Whether the last descent ended of its own.
+        converged: Whether the last descent ended before the limit of iterations.
         history: Objective after every iteration.
     """
 
@@ -73,7 +73,7 @@ class Fit:
 
     @property
     def decays(self) -> DecayPart:
-        """The part of the decays, which there has to be."""
+        """The part of the decays; the fit has to have one."""
         return next(part for part in self.parts if isinstance(part, DecayPart))
 
     def minimise(self, stage: str, tolerance: float, fraction: tuple[float, float], trust: float = DEFAULT_TRUST) -> bool:
@@ -86,7 +86,7 @@ class Fit:
             trust: Inverse of the damping at first.
 
         Returns:
-            Whether it ended of its own.
+            Whether it ended before the limit of iterations.
         """
         weights = tuple(jnp.asarray(part.weight) for part in self.parts)
         args = LeastSquares(tuple(part.fitted for part in self.parts), weights, self.mean, jnp.asarray(self.ridge))
@@ -102,12 +102,12 @@ class Fit:
         return self.converged
 
     def run_rounds(self, stage: str, rounds: int, tolerance: float) -> None:
-        """Descents with errors of the residuals estimated anew after each, until both agree.
+        """Alternate descents and new estimates of the residuals' errors, until both agree.
 
-        Every kind's error is that of the model, estimated from what is left (iterated feasible least squares).
+        The error of each kind is that of the model, estimated from its residuals (iterated feasible least squares).
 
         Args:
-            stage: Name of a stage; the number of the round takes the place of {}.
+            stage: Name of a stage, with {} for the number of the round.
             rounds: Largest number of rounds.
             tolerance: As in `minimise`.
 
@@ -147,15 +147,18 @@ class Fit:
 
 
 def remaining_error(fit: Fit) -> float:
-    """Geometric mean of the root mean squares of all groups, by their independent observations; NaN without any."""
-    squares, counts = (np.concatenate(one) for one in zip(*(part.mean_squares() for part in fit.parts), strict=True))
+    """Geometric mean of the groups' root mean squares, weighted by their independent observations.
+
+    It is NaN without observations.
+    """
+    squares, counts = (np.concatenate(arrays) for arrays in zip(*(part.mean_squares() for part in fit.parts), strict=True))
     if not len(counts):
         return math.nan
     return math.exp(0.5 * float(counts @ np.log(np.maximum(squares, 1e-300))) / float(counts.sum()))
 
 
 def stacked(parts: Sequence[WeightedProducts], shared: int) -> WeightedProducts:
-    """Products, weights, variances and inflations of several kinds as one.
+    """Stack products, weights, variances and inflations of several kinds.
 
     Args:
         parts: Those of each kind; at most one has unknowns of its own.
@@ -163,12 +166,12 @@ def stacked(parts: Sequence[WeightedProducts], shared: int) -> WeightedProducts:
     """
     size, groups = max(part[0].shape[-1] for part in parts), max(part[0].shape[1] for part in parts)
     products, rows = [], []
-    for found, *others in parts:
-        keep = np.r_[0 : found.shape[-1] - 1, size - 1]
+    for part_products, *others in parts:
+        keep = np.r_[0 : part_products.shape[-1] - 1, size - 1]
         assert len(keep) in (size, shared + 1), "one kind at most has unknowns of its own"
-        wide = np.zeros((*found.shape[:2], size, size))
-        wide[..., keep[:, None], keep] = found
-        more = [(0, 0), (0, groups - found.shape[1])]
+        wide = np.zeros((*part_products.shape[:2], size, size))
+        wide[..., keep[:, None], keep] = part_products
+        more = [(0, 0), (0, groups - part_products.shape[1])]
         products.append(np.pad(wide, [*more, (0, 0), (0, 0)]))
         # what is not there has weight 0
         rows.append([np.pad(row, more, constant_values=float(i > 0)) for i, row in enumerate(others)])

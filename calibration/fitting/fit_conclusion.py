@@ -32,10 +32,19 @@ NOT_FOLLOWED_ERROR = 0.5  # RMSE over standard deviation beyond which a model do
 
 
 def estimates(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: Spread) -> dict[str, Estimate]:
-    """The free parameters at coordinates: a standard deviation where the records determine them, none where not."""
+    """Estimates of the free parameters, by label.
+
+    An estimate has a standard deviation only where the records determine the parameter.
+
+    Args:
+        space: The free parameters.
+        model: A model with these parameters.
+        x: Their coordinates (p,).
+        uncertainty: Covariance of the coordinates.
+    """
     deviation = uncertainty.deviation()
     slope = slopes(space, x)
-    found = {}
+    estimated = {}
     for i, parameter in enumerate(space.free):
         bound = parameter.transform.at_bound(x[i])
         value, small = float(parameter.transform.forward(jnp.asarray(x[i]))), float(abs(slope[i]) * deviation[i])
@@ -44,7 +53,7 @@ def estimates(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: S
             bool(deviation[i] < IDENTIFIABLE_DEVIATION or small < IDENTIFIABLE_DEVIATION * abs(parameter.start)) and not bound
         )
         about = model.about(parameter.label)
-        found[parameter.label] = Estimate(
+        estimated[parameter.label] = Estimate(
             parameter.label,
             value,
             small if clear else None,
@@ -54,11 +63,11 @@ def estimates(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: S
             bound,
             clear,
         )
-    return found
+    return estimated
 
 
 def source_of(records: Sequence[Record]) -> str:
-    """Decays in words: how many, of which motions."""
+    """Description of decays: their number by released motion."""
     released = [str(record.degree_of_freedom) for record in records]
     counts = [(dof, released.count(dof)) for dof in dict.fromkeys(released)]
     return listed([f"{n} {dof} decay{'' if n == 1 else 's'}" for dof, n in counts])
@@ -93,7 +102,7 @@ def calibration_of(
     Args:
         campaign: The campaign.
         fit: The fit.
-        uncertainty: Covariance of its coordinates, and what it says.
+        uncertainty: Covariance of its coordinates, and the identifiability of the parameters.
         tests: Measured and simulated motions.
         seconds: Duration of the fit.
         kinds: Kinds of tests that were fitted.
@@ -101,7 +110,7 @@ def calibration_of(
         first: Remarks before those on the parameters.
         last: Remarks after these.
     """
-    spread, found = uncertainty
+    spread, identifiability = uncertainty
     parameters = estimates(fit.space, fit.parts[0].problem.model, np.asarray(fit.x), spread)
     return Calibration(
         campaign.manifest.name,
@@ -112,50 +121,57 @@ def calibration_of(
         fit.iterations,
         seconds,
         tuple(fit.history),
-        (*notes_of(NoteKind.FIT, (*lost, *first)), *remarks(campaign, parameters, found, kinds), *notes_of(NoteKind.FIT, last)),
+        (
+            *notes_of(NoteKind.FIT, (*lost, *first)),
+            *remarks(campaign, parameters, identifiability, kinds),
+            *notes_of(NoteKind.FIT, last),
+        ),
         campaign.platform.name,
-        found,
+        identifiability,
     )
 
 
-def records_not_followed(tests: Sequence[TestFit], declared: Model) -> list[str]:
-    """Sentences on fitted tests that the model does not follow, one for each motion. Most often a unit, a scale or a mass is
-    wrong."""
+def records_not_followed(tests: Sequence[TestFit], baseline: Model) -> list[str]:
+    """Sentences on fitted tests that the model does not follow, one for each motion.
+
+    Most often a unit, a scale or a mass is wrong.
+    """
     lost: dict[str, list[TestFit]] = {}
     for test in tests:
         if test.use == "fit" and test.main.relative >= NOT_FOLLOWED_ERROR:
             lost.setdefault(test.main.channel, []).append(test)
     if not lost:
         return []
-    modes = natural_modes(declared)
+    modes = natural_modes(baseline)
     return [
-        f"the model does not follow {listed([test.id for test in some])}: the RMSE is "
-        f"{percent_span([test.main.relative for test in some])} of the motion's standard deviation. Period in {channel}: "
-        f"measured {_periods(some)}, of the platform file {modes.of(channel):.3g} s. Check scale, units, mass and stiffness"
-        for channel, some in lost.items()
+        f"the model does not follow {listed([test.id for test in group])}: the RMSE is "
+        f"{percent_span([test.main.relative for test in group])} of the motion's standard deviation. Period in {channel}: "
+        f"measured {_periods(group)}, of the platform file {modes.of(channel):.3g} s. Check scale, units, mass and stiffness"
+        for channel, group in lost.items()
     ]
 
 
 def period_remarks(tests: Sequence[TestFit]) -> list[str]:
     """Sentences on fitted decays whose period changes with the amplitude otherwise than the model's."""
-    said = []
+    sentences = []
     for test in tests:
         main = test.main
         if test.use != "fit" or test.kind != "decay" or main.relative >= NOT_FOLLOWED_ERROR:
             continue
-        found = unexplained_period_change(test.time, main.measured, main.simulated, main.noise)
-        if found is not None:
-            said.append(
-                f"{test.id}: the period of {main.channel} goes from {found.large:.4g} s at large amplitude to "
-                f"{found.small:.4g} s at small, the model's from {found.simulated_large:.4g} to {found.simulated_small:.4g} s. "
+        change = unexplained_period_change(test.time, main.measured, main.simulated, main.noise)
+        if change is not None:
+            sentences.append(
+                f"{test.id}: the period of {main.channel} goes from {change.large:.4g} s at large amplitude to "
+                f"{change.small:.4g} s at small, the model's from {change.simulated_large:.4g} "
+                f"to {change.simulated_small:.4g} s. "
                 "`jaxhydro diagnose` looks for what the model lacks"
             )
-    return said
+    return sentences
 
 
 def _periods(tests: Sequence[TestFit]) -> str:
     """The smallest and the largest median period of some tests."""
-    cycles = [decay_cycles(one.time, one.main.measured - one.main.measured.mean(), one.main.noise).period for one in tests]
+    cycles = [decay_cycles(test.time, test.main.measured - test.main.measured.mean(), test.main.noise).period for test in tests]
     medians = sorted({f"{float(np.median(period)):.3g}" for period in cycles if len(period)}, key=float)
     return f"{' to '.join(dict.fromkeys((medians[0], medians[-1])))} s" if medians else "none seen"
 
@@ -163,24 +179,26 @@ def _periods(tests: Sequence[TestFit]) -> str:
 def remarks(
     campaign: Campaign,
     parameters: dict[str, Estimate],
-    found: Identifiability,
+    identifiability: Identifiability,
     kinds: Sequence[str] = ("decay",),
 ) -> tuple[Note, ...]:
-    """Findings in words: what was seen in the records, what was left out, and which parameters mean nothing."""
-    seen = [str(finding) for finding in group_findings(campaign.findings)]
-    left = [r.id for r in campaign.records if r.use != "ignore" and r.kind not in kinds]
-    if left:
-        seen.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")
-    said = []
+    """Remarks on the records, on tests left out, and on parameters that are not determined."""
+    record_remarks = [str(finding) for finding in group_findings(campaign.findings)]
+    left_out = [r.id for r in campaign.records if r.use != "ignore" and r.kind not in kinds]
+    if left_out:
+        record_remarks.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left_out)}")
+    parameter_remarks = []
     if campaign.used("fit") and not any(
         parameter_family(label, law_labels(campaign.model)) == "damping" for label in parameters
     ):
-        said.append("no damping is fitted: the platform declares none or 0 for these motions, or calibrate.free leaves it out")
+        parameter_remarks.append(
+            "no damping is fitted: the platform declares none or 0 for these motions, or calibrate.free leaves it out"
+        )
     band = band_sentence(campaign.manifest, campaign.model, campaign.records) if set(IN_WAVES) & set(kinds) else None
-    seen += [] if band is None else [band]
+    record_remarks += [] if band is None else [band]
     vague = [label for label, p in parameters.items() if not p.identifiable]
     if vague:
         ends = "its value is no result" if len(vague) == 1 else "their values are not results"
-        said.append(f"these records do not determine {', '.join(vague)}: {ends}")
-    about = (*said, *unit_hints(parameters.values()), *found.sentences())
-    return (*notes_of(NoteKind.RECORDS, seen), *notes_of(NoteKind.PARAMETERS, about))
+        parameter_remarks.append(f"these records do not determine {', '.join(vague)}: {ends}")
+    about = (*parameter_remarks, *unit_hints(parameters.values()), *identifiability.sentences())
+    return (*notes_of(NoteKind.RECORDS, record_remarks), *notes_of(NoteKind.PARAMETERS, about))

@@ -94,12 +94,12 @@ def calibrate_jointly(
     if not (decays or waves or held or stated_periods):
         expected = f"at least one test marked `use: fit`, or a natural period, among {', '.join(kinds)}"
         raise InputError(source, [Problem("tests", expected, "none")])
-    declared = with_diffraction(campaign.model, options)
+    baseline = with_diffraction(campaign.model, options)
     moved = {str(record.degree_of_freedom) for record in [*decays, *held]} | set(stated_periods)
     for record in waves:
         moved |= set(moving_channels({k: record.values[k] for k in DOFS if k in record.values}))
-    labels = labels_of(campaign, declared, sorted(moved), free)
-    first_model = declared.with_values(start or {})
+    labels = labels_of(campaign, baseline, sorted(moved), free)
+    first_model = baseline.with_values(start or {})
     space = space_of(campaign, labels, first_model)
     from_rest, scale = campaign.manifest.zero is not None, campaign.manifest.scale
     parts: list[AbstractPart] = []
@@ -113,10 +113,10 @@ def calibrate_jointly(
         run_fit(alone)
         unknowns = alone.unknowns
         parts.append(DecayPart(alone.decays.problem, alone.decays.records, loss))
-    made: Seas = seas_of(campaign, declared.environment, options) if waves else ()
+    made: Seas = seas_of(campaign, baseline.environment, options) if waves else ()
 
     def problem_in_waves(model: Model) -> SeaProblem:
-        step = sea_step(declared, options)
+        step = sea_step(baseline, options)
         return set_up_waves(model, made, space, options, from_rest=from_rest, scale=scale, step=step, objective=objective)
 
     if waves:
@@ -132,7 +132,7 @@ def calibrate_jointly(
 
     joint = Fit(parts, unknowns, now)
     counts = {"decay{}": decays, "test{} in waves": waves, "static offset{}": held, "natural period{}": stated_periods}
-    words = listed([f"{len(there)} {name.format('s' * (len(there) != 1))}" for name, there in counts.items() if there])
+    words = listed([f"{len(items)} {name.format('s' * (len(items) != 1))}" for name, items in counts.items() if items])
 
     def finish() -> Calibration:
         uncertainty = joint.uncertainty(words)
@@ -141,7 +141,7 @@ def calibrate_jointly(
         lost = records_not_followed(tests, first_model) if loss == "squares" else []
         tests += held_out(campaign, first_model, joint.model) if decays else []
         in_waves, warnings = tests_in_waves(campaign, first_model, joint.model, options, made) if made else ((), ())
-        said = _of_kinds(campaign, joint, loss)
+        kind_remarks = _of_kinds(campaign, joint, loss)
         kinds, seconds = ("decay", *IN_WAVES, "static"), clock.monotonic() - begun
         return calibration_of(
             campaign,
@@ -151,7 +151,7 @@ def calibrate_jointly(
             seconds,
             kinds=kinds,
             lost=lost,
-            first=said,
+            first=kind_remarks,
             last=notes_of(NoteKind.RECORDS, warnings),
         )
 
@@ -159,24 +159,26 @@ def calibrate_jointly(
 
 
 def _of_kinds(campaign: Campaign, joint: Fit, loss: Loss) -> tuple[str, ...]:
-    """How far off each kind is, periods fitted against stated, and what could not take part."""
-    said = []
+    """Remarks on the error of each kind, on fitted against stated periods, and on tests left out."""
+    sentences = []
     if loss != "squares":
-        said.append("residuals count by Cauchy's loss: outliers hardly do")
+        sentences.append("residuals count by Cauchy's loss: outliers hardly do")
     for part in joint.parts:
         assert part.errors is not None
         error = np.sqrt(part.errors.variance[0])
         if isinstance(part, SeaPart):
             bands = [float(e) for e, b in zip(error, part.problem.in_bands, strict=True) if b]
-            said += [f"estimated error of ln(simulated / measured energy): {number(one, 2)}" for one in bands]
+            sentences += [f"estimated error of ln(simulated / measured energy): {number(value, 2)}" for value in bands]
         elif isinstance(part, OffsetPart):
-            said.append(f"estimated error of a static offset: {percent(float(error[0]))} of the motion that was held")
+            sentences.append(f"estimated error of a static offset: {percent(float(error[0]))} of the motion that was held")
     if any(isinstance(part, PeriodPart) for part in joint.parts):
         fitted, scale = natural_modes(joint.model), campaign.manifest.scale**0.5
-        for dof, one in campaign.manifest.calibrate.natural_periods.items():
-            stated = with_deviation(one.value * scale, one.standard_deviation * scale)
-            said.append(f"natural period in {dof}: {number(fitted.of(dof), 4)} s, stated {stated} s")
+        for dof, period in campaign.manifest.calibrate.natural_periods.items():
+            stated = with_deviation(period.value * scale, period.standard_deviation * scale)
+            sentences.append(f"natural period in {dof}: {number(fitted.of(dof), 4)} s, stated {stated} s")
     idle = [r.id for r in campaign.used("fit") if r.kind == "static" and r.degree_of_freedom is None]
     if idle:
-        said.append(f"static tests without a `degree_of_freedom`, the motion that was held, are left out: {', '.join(idle)}")
-    return tuple(said)
+        sentences.append(
+            f"static tests without a `degree_of_freedom`, the motion that was held, are left out: {', '.join(idle)}"
+        )
+    return tuple(sentences)

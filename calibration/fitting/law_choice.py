@@ -44,19 +44,19 @@ class LawFit:
     held_out: float
 
     def added(self) -> dict[str, float]:
-        """Label -> value of what the law adds to coefficients."""
+        """Values of the parameters that the law adds, by label."""
         laws = law_labels(self.calibration.model)
-        return {label: one.value for label, one in self.calibration.parameters.items() if label in laws}
+        return {label: estimate.value for label, estimate in self.calibration.parameters.items() if label in laws}
 
     def coefficient(self, label: str, state: SeaState) -> tuple[float, float]:
         """A coefficient in a sea state, and the standard deviation of its logarithm.
 
-        Of a power of the Keulegan-Carpenter number it is that for the waves' own motion at the surface, 2 a = Hs; of drag in
-        which slow motion is apart, that of fast motion.
+        A power of the Keulegan-Carpenter number is taken for the waves' own motion at the surface, 2 a = Hs. Where drag
+        treats slow motion apart, the coefficient is that of fast motion.
         """
-        model, known = self.calibration.model, self.calibration.identifiability
+        model, identifiability = self.calibration.model, self.calibration.identifiability
         value = float(coefficients(model.in_sea(state).loads)[label])
-        assert known is not None
+        assert identifiability is not None
         reference = reference_of(model.loads)
         logs = (
             {}
@@ -68,19 +68,19 @@ class LawFit:
             ratio = float(log_ratio(surface_number(model.hull, label, state.significant_height) ** 2, law.reference))
             value *= math.exp(law.exponent * ratio)
             logs[drag_law_labels(model, "exponent")[label]] = ratio
-        return value, _deviation(known, label, logs)
+        return value, _deviation(identifiability, label, logs)
 
 
-def _deviation(known: Identifiability, label: str, logs: Mapping[str, float]) -> float:
+def _deviation(identifiability: Identifiability, label: str, logs: Mapping[str, float]) -> float:
     """Standard deviation of ln c0 + sum of exponents times logarithms."""
-    parameters = known.parameters
+    parameters = identifiability.parameters
     row = np.zeros(len(parameters.labels))
     for i, name in enumerate(parameters.labels):
         if name == label:
             row[i] = parameters.slope[i] / parameters.value[i]
         elif name in logs:
             row[i] = parameters.slope[i] * logs[name]
-    return float(np.sqrt(max(row @ known.covariance @ row, 0.0)))
+    return float(np.sqrt(max(row @ identifiability.covariance @ row, 0.0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +109,7 @@ class SeaLaws:
         seas: Calibrations to single sea states.
         judged_by: Names of the tests on which the laws are compared.
         left_out: Whether these are fitted tests left out in turn, since no test is held out.
-        finished: False where the user stopped the comparison; then only what was done is there.
+        finished: False where the user stopped the comparison; then there are only the finished calibrations.
     """
 
     laws: tuple[LawFit, ...]
@@ -120,12 +120,12 @@ class SeaLaws:
 
     @property
     def chosen(self) -> LawFit:
-        """The law with the least held-out error; an earlier one that is as good to 2 % is preferred."""
+        """The law with the least held-out error; an earlier law that is as good to 2 % is preferred."""
         least = min(law.held_out for law in self.laws)
         return next(law for law in self.laws if law.held_out <= (1 + HELD_OUT_TOLERANCE) * least)
 
     def labels(self) -> list[str]:
-        """The coefficients that any of the laws lets depend on the sea state or the motion."""
+        """Labels of coefficients that depend on the sea state or the motion in any of the laws."""
         return list(dict.fromkeys(law_labels(law.calibration.model)[label] for law in self.laws for label in law.added()))
 
 
@@ -170,7 +170,7 @@ def choose_law(
     count = len(laws) * (1 if held else 1 + len(fitted)) + len(fitted) + len(held)
     done = 0
 
-    def one(name: str, uses: Mapping[str, str], begin: dict[str, float] | None, law: str = "constant") -> Calibration:
+    def fit_law(name: str, uses: Mapping[str, str], begin: dict[str, float] | None, law: str = "constant") -> Calibration:
         nonlocal done
         over, drag = LAWS[law]
 
@@ -180,37 +180,37 @@ def choose_law(
                 progress(replace(now, stage=stage, fraction=(done + now.fraction) / count))
 
         used, seas = with_test_uses(campaign, made, uses)
-        found = calibrate_in_waves(
+        calibration = calibrate_in_waves(
             used, free=free, start=begin, options=options, over=over, drag=drag, made=seas, progress=report
         )
         done += 1
-        return found
+        return calibration
 
-    found: list[LawFit] = []
+    law_fits: list[LawFit] = []
     seas: list[SeaStateFit] = []
     finished = False
     try:
         for name in laws:
-            begin = {k: p.value for k, p in found[0].calibration.parameters.items()} if found else start
-            whole = one(name, {}, begin, name)
+            begin = {k: p.value for k, p in law_fits[0].calibration.parameters.items()} if law_fits else start
+            whole = fit_law(name, {}, begin, name)
             if held:
                 judged = [energy_error(whole, held)]
             else:
-                judged = [energy_error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
-            found.append(LawFit(name, whole, energy_error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
-        added = found[0].added()
-        values = {k: p.value for k, p in found[0].calibration.parameters.items() if k not in added}
+                judged = [energy_error(fit_law(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
+            law_fits.append(LawFit(name, whole, energy_error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
+        added = law_fits[0].added()
+        values = {k: p.value for k, p in law_fits[0].calibration.parameters.items() if k not in added}
         for id in [*fitted, *held]:
-            alone = {other: "fit" if other == id else "ignore" for other in [*fitted, *held]}
+            alone = {test: "fit" if test == id else "ignore" for test in [*fitted, *held]}
             record, run = next((r, run) for run, _ in made for r in run.records if r.id == id)
             state = sea_state(run, record, options.low, options.cutoff)
-            seas.append(SeaStateFit(id, record.use, state, one(f"{id} alone", alone, values)))
+            seas.append(SeaStateFit(id, record.use, state, fit_law(f"{id} alone", alone, values)))
         finished = True
     except KeyboardInterrupt:
         stopping()
-        if not found:
+        if not law_fits:
             raise
-    return SeaLaws(tuple(found), tuple(seas), tuple(held or fitted), not held, finished)
+    return SeaLaws(tuple(law_fits), tuple(seas), tuple(held or fitted), not held, finished)
 
 
 def energy_error(calibration: Calibration, tests: Sequence[str]) -> float:
@@ -220,7 +220,15 @@ def energy_error(calibration: Calibration, tests: Sequence[str]) -> float:
 
 
 def with_test_uses(campaign: Campaign, made: Seas, uses: Mapping[str, str]) -> tuple[Campaign, Seas]:
-    """The campaign and its runs with tests used otherwise, id -> use; runs without a test left are left out."""
+    """The campaign and its runs with other uses of some tests.
+
+    Runs in which no test is left are left out.
+
+    Args:
+        campaign: The campaign.
+        made: Runs of the campaign and their seas.
+        uses: New use of a test, by its id.
+    """
 
     def changed(records: Sequence[Any]) -> tuple[Any, ...]:
         return tuple(replace(record, use=uses.get(record.id, record.use)) for record in records)

@@ -26,23 +26,42 @@ DEFAULT_WINDOW = 60.0  # s, of a Keulegan-Carpenter number, where no motion has 
 
 
 def reference_sea_state(made: Seas, options: Options) -> SeaState:
-    """The geometric mean of the sea states of the tests that are fitted, to two digits."""
+    """Geometric mean of the sea states of the fitted tests, to two digits."""
     states = [sea_state(run, r, options.low, options.cutoff) for run, _ in made for r in run.records if r.use == "fit"]
     return SeaState(*(float(f"{math.exp(value):.2g}") for value in np.log(states).mean(axis=0)))
 
 
 def with_sea_state_laws(model: Model, labels: Sequence[str], over: Sequence[Over], reference: SeaState) -> Model:
-    """The model with powers of the sea state, of exponent 0, for some of its coefficients, where it has none of its own."""
-    added = [(one, kind) for one in labels for kind in over if exponent_label(one, kind) not in model.values]
+    """Add powers of the sea state, of exponent 0, to coefficients of a model.
+
+    A coefficient that has such a power already keeps it.
+
+    Args:
+        model: The model.
+        labels: Labels of the coefficients.
+        over: Variables of the sea state.
+        reference: Sea state that the powers refer to.
+    """
+    added = [(label, kind) for label in labels for kind in over if exponent_label(label, kind) not in model.values]
     return replace(model, loads=with_exponents(model.loads, dict.fromkeys(added, 0.0), reference))
 
 
 def with_drag_law(model: Model, labels: Sequence[str], kind: Drag, state: SeaState, cutoff: float) -> tuple[Model, list[str]]:
-    """The model with a law in place of plain drag for those of `labels` that have it, and the labels of what is to be fitted.
+    """Replace plain drag of a model by a law at its neutral value.
 
-    "keulegan_carpenter": the exponent, 0; its reference is the number of the waves' own motion at the surface in a sea `state`,
-    to two digits, its window the longest natural period. "high_pass": the share of the coefficient that motion slower than the
-    `cutoff` (Hz) feels, 1.
+    "keulegan_carpenter" adds an exponent, 0. Its reference is the number of the waves' own motion at the surface in the sea
+    `state`, to two digits. Its window is the longest natural period. "high_pass" adds the share of the coefficient that motion
+    slower than the cutoff feels, 1.
+
+    Args:
+        model: The model.
+        labels: Labels of the coefficients; those that are not of plain drag are left as they are.
+        kind: Name of the law.
+        state: Sea state of the reference.
+        cutoff: Frequency that divides slow from fast motion (Hz).
+
+    Returns:
+        The model, and the labels of the added parameters, which are to be fitted.
     """
     plain = [label for label in plain_drag(model) if label in labels]
     laws: dict[str, DragLaw] = {}

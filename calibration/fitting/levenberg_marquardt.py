@@ -1,4 +1,4 @@
-"""Levenberg-Marquardt optimiser with limited steps, on optimistix's (cost, gradient, Gauss-Newton matrix)."""
+"""Levenberg-Marquardt optimiser with limited steps, on cost, gradient and Gauss-Newton matrix."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -24,7 +24,11 @@ Objective = Callable[[Unknowns, PyTree], tuple[Any, PyTree]]
 
 
 class EliminatedDescent(optx.AbstractDescent[Unknowns, optx.FunctionInfo.EvalGradHessian, Any]):
-    """Damped Newton step with each record's own unknowns eliminated, of at most `longest` in its largest component."""
+    """Damped Newton step of limited length, with each record's own unknowns eliminated.
+
+    Attributes:
+        longest: Largest magnitude of a component of the step.
+    """
 
     longest: float = LONGEST_STEP
 
@@ -61,8 +65,13 @@ class _State(NamedTuple):
 
 
 class DescentState(NamedTuple):
-    """Where a descent is after an iteration: the unknowns, what the objective returned beside its equations there, and whether
-    it ended there of its own."""
+    """State of a descent after an iteration.
+
+    Attributes:
+        unknowns: The unknowns.
+        aux: What the objective returned beside its equations.
+        settled: Whether the descent ended here, before the limit of iterations.
+    """
 
     unknowns: Unknowns
     aux: PyTree
@@ -80,9 +89,9 @@ def _begin(objective: Objective, unknowns: Unknowns, args: PyTree, trust: Array)
 @eqx.filter_jit
 def _step(objective: Objective, args: PyTree, state: _State) -> tuple[_State, Bool[Array, ""]]:
     point, trial, search, first = state
-    there = _Point(trial, *objective(trial, args))
-    size, accepted, _, search = SEARCH.step(first, point.unknowns, trial, point.info, there.info, search)
-    point = jax.tree.map(lambda new, old: jnp.where(accepted, new, old), there, point)
+    candidate = _Point(trial, *objective(trial, args))
+    size, accepted, _, search = SEARCH.step(first, point.unknowns, trial, point.info, candidate.info, search)
+    point = jax.tree.map(lambda new, old: jnp.where(accepted, new, old), candidate, point)
     step, _ = DESCENT.step(size, DESCENT.query(point.unknowns, point.info, None))
     return _State(point, jax.tree.map(jnp.add, point.unknowns, step), search, jnp.array(False)), accepted
 
@@ -92,8 +101,13 @@ def descend(
 ) -> Iterator[DescentState]:
     """Levenberg-Marquardt iterations on an objective.
 
-    It is done where an accepted step gains less than `tolerance` of the sum of squares, where steps are refused however short
-    they are, or after `MAX_ITERATIONS` iterations. One compilation serves all calls with arguments of the same shapes.
+    The descent ends in one of these cases:
+
+    - An accepted step gains less than `tolerance` of the sum of squares.
+    - `MAX_REFUSED_STEPS` steps in a row are refused.
+    - `MAX_ITERATIONS` iterations are done.
+
+    One compilation serves all calls with arguments of the same shapes.
 
     Args:
         objective: Cost, gradient and Gauss-Newton matrix at unknowns, such as `normal_equations`.

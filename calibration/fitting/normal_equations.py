@@ -1,4 +1,4 @@
-"""Normal equations of a fit: cost, gradient and Gauss-Newton matrix, each record's own unknowns eliminated."""
+"""Cost, gradient and Gauss-Newton matrix of a fit, with each record's own unknowns eliminated."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -52,7 +52,7 @@ class ArrowMatrix(lx.AbstractLinearOperator):
     def eliminated(
         self, vector: Unknowns, ridge: Float[Any, "r o"], counted: Float[Any, " r"] | None = None
     ) -> tuple[Float[Any, "p p"], Float[Any, " p"], Float[Any, "r o p+1"]]:
-        """Equations A z = vector of the shared unknowns alone, by the Schur complement of the records' own blocks.
+        """Equations A z = vector of the shared unknowns alone, by the Schur complement of the own blocks.
 
         Args:
             vector: Right-hand side.
@@ -66,15 +66,15 @@ class ArrowMatrix(lx.AbstractLinearOperator):
         cross = self.cross if counted is None else self.cross * counted[:, None, None]
         columns = xp.concatenate([xp.swapaxes(self.cross, 1, 2), vector.own[..., None]], axis=-1)
         follow = xp.linalg.solve(self.own + xp.eye(self.own.shape[-1]) * ridge[..., None], columns)
-        left = self.shared - xp.einsum("rpo,roq->pq", cross, follow[..., :-1])
-        return left, vector.shared - xp.einsum("rpo,ro->p", cross, follow[..., -1]), follow
+        matrix = self.shared - xp.einsum("rpo,roq->pq", cross, follow[..., :-1])
+        return matrix, vector.shared - xp.einsum("rpo,ro->p", cross, follow[..., -1]), follow
 
     def solve(self, vector: Unknowns, damping: Float[Any, ""] | float = 0.0) -> Unknowns:
         """(A + damping I)^-1 vector."""
         size = jnp.diagonal(self.own, axis1=1, axis2=2)
         ridge = damping + jnp.where(size > 0, OWN_ROUNDING * size, 1.0)
-        left, right, follow = self.eliminated(vector, ridge)
-        shared = jnp.linalg.solve(left + damping * jnp.eye(len(right)), right)
+        matrix, right, follow = self.eliminated(vector, ridge)
+        shared = jnp.linalg.solve(matrix + damping * jnp.eye(len(right)), right)
         return Unknowns(shared, own_of(follow, shared))
 
 
@@ -89,11 +89,11 @@ def _(operator: ArrowMatrix) -> bool:
 
 
 class LeastSquares(NamedTuple):
-    """What a fit minimises: half the weighted squares of residuals, and of the priors.
+    """Objective of a fit: half the weighted squares of the residuals, and of the priors.
 
     Attributes:
         residuals: Residuals of some kinds; one of them at most has own unknowns.
-        weights: What multiplies the squares, by record and group (r, g), for each of `residuals`.
+        weights: Weights of the squares, by record and group (r, g), for each of `residuals`.
         mean: Means of the shared unknowns' priors (p,).
         ridge: Square roots of the priors' weights (p,).
     """
@@ -108,10 +108,10 @@ Products = tuple[Float[Array, "r g k k"], ...]
 
 
 def normal_equations(unknowns: Unknowns, fit: LeastSquares) -> tuple[Any, Products]:
-    """Cost, gradient and Gauss-Newton matrix, and the products of each kind of residual that they are made of.
+    """Cost, gradient and Gauss-Newton matrix, and the products that they are made of.
 
     Returns:
-        optimistix's `FunctionInfo.EvalGradHessian`, with an `ArrowMatrix`, and the products.
+        optimistix's `FunctionInfo.EvalGradHessian`, with an `ArrowMatrix`, and the products of each kind of residual.
     """
     p, (records, size) = len(unknowns.shared), unknowns.own.shape
     off = fit.ridge * (unknowns.shared - fit.mean)
@@ -136,6 +136,6 @@ def cost_of(products: Sequence[np.ndarray], weights: Sequence[np.ndarray]) -> fl
 
 
 def clipped(step: Unknowns, longest: float) -> Unknowns:
-    """A step shortened, not bent, to at most `longest` in its largest component."""
+    """Step scaled to at most `longest` in its largest component, its direction unchanged."""
     largest = jnp.max(jnp.stack([jnp.max(jnp.abs(leaf), initial=0.0) for leaf in step]))
     return jax.tree.map(lambda leaf: jnp.minimum(1.0, longest / jnp.maximum(largest, 1e-300)) * leaf, step)

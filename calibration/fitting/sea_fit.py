@@ -80,8 +80,8 @@ def calibrate_in_waves(
         options: How waves are made and act; None for the campaign's band of frequencies and defaults otherwise.
         over: Sea-state variables. Free drag and damping coefficients become powers of these (`SeaStateLaw`), of exponents
             with a prior of 0 +- 1. Every test is simulated with the coefficients of its own measured sea state.
-        drag: Law for free coefficients of plain drag: a power of the Keulegan-Carpenter number (`KeuleganCarpenterDrag`),
-            or a share of their own in motion slower than the waves (`HighPassDrag`). See `with_drag_law`.
+        drag: Law for free coefficients of plain drag, see `with_drag_law`. It is a power of the Keulegan-Carpenter number
+            (`KeuleganCarpenterDrag`), or a share of their own in motion slower than the waves (`HighPassDrag`).
         made: Runs and seas of the campaign (`seas_of`), where they are at hand.
 
     Returns:
@@ -93,36 +93,36 @@ def calibrate_in_waves(
     """
     begun = clock.monotonic()
     check(objective=(objective, get_args(Objective)), drag=(drag, (*get_args(Drag), None)))
-    for one in over:
-        check(over=(one, get_args(Over)))
+    for variable in over:
+        check(over=(variable, get_args(Over)))
     source = str(campaign.folder / "campaign.yaml")
     options = options_of(campaign) if options is None else options
     records = [record for record in campaign.used("fit") if record.kind in IN_WAVES]
     if not records:
-        found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
-        raise InputError(source, [Problem("tests", "at least one test in waves marked `use: fit`", found)])
-    declared = with_diffraction(campaign.model, options)
-    made = seas_of(campaign, declared.environment, options) if made is None else made
+        uses = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
+        raise InputError(source, [Problem("tests", "at least one test in waves marked `use: fit`", uses)])
+    baseline = with_diffraction(campaign.model, options)
+    made = seas_of(campaign, baseline.environment, options) if made is None else made
     moved = sorted({dof for r in records for dof in moving_channels({k: r.values[k] for k in DOFS if k in r.values})})
-    labels, laws = list(labels_of(campaign, declared, moved, free)), law_labels(declared)
+    labels, laws = list(labels_of(campaign, baseline, moved, free)), law_labels(baseline)
     if over:
         damping = [label for label in labels if parameter_family(label, laws) == "damping"]
-        declared = with_sea_state_laws(
-            declared, damping, over, law_reference(declared.loads) or reference_sea_state(made, options)
+        baseline = with_sea_state_laws(
+            baseline, damping, over, law_reference(baseline.loads) or reference_sea_state(made, options)
         )
-    exponent_labels = exponents_of(declared.loads) - set(labels)
-    added = [label for label in declared.values if label in exponent_labels]
+    exponent_labels = exponents_of(baseline.loads) - set(labels)
+    added = [label for label in baseline.values if label in exponent_labels]
     if drag is not None:
         state = reference_sea_state(made, options)
-        declared, of_drag = with_drag_law(declared, labels, drag, state, options.low)
-        if not of_drag:
+        baseline, drag_labels = with_drag_law(baseline, labels, drag, state, options.low)
+        if not drag_labels:
             raise InputError(source, [Problem("calibrate.free", "a coefficient of plain drag", ", ".join(labels))])
-        added += of_drag
+        added += drag_labels
     # what a law adds that is not asked for is left out
-    begin = {label: value for label, value in (start or {}).items() if label in declared.values or label not in laws}
-    declared = declared.with_values(begin)
-    exponents = {label: (0.0, EXPONENT_DEVIATION) for label in added if declared.about(label).neutral == 0}
-    space = space_of(campaign, [*labels, *added], declared, exponents)
+    begin = {label: value for label, value in (start or {}).items() if label in baseline.values or label not in laws}
+    baseline = baseline.with_values(begin)
+    exponents = {label: (0.0, EXPONENT_DEVIATION) for label in added if baseline.about(label).neutral == 0}
+    space = space_of(campaign, [*labels, *added], baseline, exponents)
 
     def report(stage: str, iteration: int, value: float, fraction: float) -> None:
         if progress is not None:
@@ -138,23 +138,23 @@ def calibrate_in_waves(
             options,
             from_rest=campaign.manifest.zero is not None,
             scale=campaign.manifest.scale,
-            step=sea_step(declared, options),
+            step=sea_step(baseline, options),
             objective=objective,
         )
 
     part: SeaPart | BlockPart
     if objective == "blocks":
-        part = BlockPart(set_up, declared)
+        part = BlockPart(set_up, baseline)
         unknowns = part.problem.begin()
     else:
-        part = SeaPart(set_up, declared, pooled=True)
+        part = SeaPart(set_up, baseline, pooled=True)
         unknowns = parameters_only(space.start)
     fit = Fit([part], unknowns, report)
 
     def finish() -> Calibration:
         source = "the tests in waves by blocks" if objective == "blocks" else "the tests in waves"
         uncertainty = fit.uncertainty(source)
-        tests, warnings = tests_in_waves(campaign, declared, fit.model, options, made)
+        tests, warnings = tests_in_waves(campaign, baseline, fit.model, options, made)
         remarks = notes_of(NoteKind.PARAMETERS, sea_remarks(fit.model, tests))
         last = (*remarks, *part.notes(), *notes_of(NoteKind.RECORDS, warnings))
         return calibration_of(campaign, fit, uncertainty, tests, clock.monotonic() - begun, kinds=IN_WAVES, last=last)
@@ -163,16 +163,16 @@ def calibrate_in_waves(
 
 
 def tests_in_waves(
-    campaign: Campaign, declared: Model, model: Model, options: Options, made: Seas
+    campaign: Campaign, baseline: Model, model: Model, options: Options, made: Seas
 ) -> tuple[tuple[TestFit, ...], tuple[str, ...]]:
-    """All tests in waves with a calibrated model, and with that declared; and words of warning."""
-    after, before = (compare(campaign, one, options, made=made) for one in (model, declared))
+    """All tests in waves with a calibrated model and with the baseline, and warnings."""
+    after, before = (compare(campaign, candidate, options, made=made) for candidate in (model, baseline))
     tests = tuple(_test(*pair) for pair in zip(after.tests, before.tests, strict=True))
     return tests, tuple(dict.fromkeys(before.notes + after.notes))
 
 
 def _test(after: SeaTest, before: SeaTest) -> TestFit:
-    """A test with both motions, the errors of its bands, and its motions that matter counting in J."""
+    """A test with both motions and the errors of its bands; its large motions count in J."""
     counts = moving_channels({s.channel: s.measured for s in after.fit.series})
     series = tuple(replace(s, scored=s.channel in counts) for s in after.fit.series)
     start = {s.channel: s.simulated for s in before.fit.series}

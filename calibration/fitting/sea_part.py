@@ -20,7 +20,7 @@ class SeaPart(AbstractPart):
     """Tests in waves within a fit.
 
     Attributes:
-        set_up: The residuals of a model, in seas prepared for its motion.
+        set_up: Function from a model to its residuals, in seas prepared for its motion.
         pooled: Whether all groups have one error. A motion is then one observation. Otherwise every group has its own, and a
             motion is as many observations as its residual has independent samples.
         groups: Residuals where errors were last estimated.
@@ -51,7 +51,7 @@ class SeaPart(AbstractPart):
 
     @property
     def inflation(self) -> np.ndarray:
-        """How many samples of each group count as one (g,)."""
+        """Number of correlated samples that count as one, by group (g,)."""
         pairs = zip(self.groups, self.problem.in_bands, strict=True)
         return np.array([1.0 if bands else correlated_samples(group) for group, bands in pairs])
 
@@ -77,12 +77,15 @@ class SeaPart(AbstractPart):
         return False
 
     def covariance_parts(self, unknowns: Unknowns, ridge: np.ndarray) -> WeightedProducts:
-        """As for any kind. With a pooled error, a motion's residual counts as many times as it is independent, and the
-        variance is what is left after what the parameters and their prior took."""
-        found = super().covariance_parts(unknowns, ridge)
+        """As in `AbstractPart`; with a pooled error, variances and inflations are those of the groups.
+
+        A motion's residual then counts as many times as it has independent samples. Variances are raised for the share that
+        the parameters and their prior have absorbed.
+        """
+        parts = super().covariance_parts(unknowns, ridge)
         if not self.pooled:
-            return found
-        products, weight, *_ = found
+            return parts
+        products, weight, *_ = parts
         whole = np.einsum("rgkl,rg->kl", products[..., :-1, :-1], weight)
         used = float(np.trace(np.linalg.solve(whole + np.diag(ridge**2), whole)))
         total = float(self.independent.sum())

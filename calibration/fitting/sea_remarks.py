@@ -16,7 +16,7 @@ WORSE_RATIO = 1.1  # of the error before, from which it is said
 
 
 def sea_remarks(model: Model, tests: Sequence[TestFit]) -> tuple[str, ...]:
-    """Of a calibrated model and all tests in waves."""
+    """Remarks on a calibrated model and all tests in waves."""
     return (*_laws(model), *_short(model, tests), *_held_out(tests))
 
 
@@ -25,9 +25,9 @@ def _laws(model: Model) -> Iterator[str]:
     for label, law in drag_laws_of(model).items():
         constants = law.model_dump(include={"reference", "window", "cutoff"}, exclude_none=True)
         units = {"reference": "", "window": " s", "cutoff": " Hz"}
-        said = ", ".join(f"{key} {number(value, 3)}{units[key]}" for key, value in constants.items())
-        if said:
-            yield f"{label}: drag law {law.law}, {said}"
+        phrase = ", ".join(f"{key} {number(value, 3)}{units[key]}" for key, value in constants.items())
+        if phrase:
+            yield f"{label}: drag law {law.law}, {phrase}"
 
 
 def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
@@ -56,7 +56,7 @@ def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
 
 def _held_out(tests: Sequence[TestFit]) -> Iterator[str]:
     for test in tests:
-        pairs = [(one.before, one.after) for row in test.bands.values() for one in row.values()]
+        pairs = [(band.before, band.after) for row in test.bands.values() for band in row.values()]
         if test.use != "holdout" or not pairs:
             continue
         before, after = map(error_of_energies, zip(*pairs, strict=True))

@@ -11,24 +11,28 @@ MAX_RELATIVE_DEVIATION = 0.1  # of a coefficient: a larger standard deviation sa
 
 
 def unit_hints(parameters: Iterable[Estimate]) -> Iterator[str]:
-    """A hint for every coefficient that a mistaken unit or sign would explain, given the value that its fit began from.
+    """Hints on coefficients that a mistaken unit or sign would explain.
 
-    A damping that goes with the square of the motion takes up the unit of the motion; a coupling takes up the sign of an axis.
+    A coefficient is compared with the value that its fit began from. A damping that goes with the square of the motion takes up
+    the unit of the motion. A coupling takes up the sign of an axis.
     """
-    for one in parameters:
-        deviation = one.standard_deviation
+    for estimate in parameters:
+        deviation = estimate.standard_deviation
         if (
-            not one.identifiable
-            or one.start == 0
-            or one.value == 0
+            not estimate.identifiable
+            or estimate.start == 0
+            or estimate.value == 0
             or deviation is None
-            or deviation > MAX_RELATIVE_DEVIATION * abs(one.value)
+            or deviation > MAX_RELATIVE_DEVIATION * abs(estimate.value)
         ):
             continue
-        ratio = one.value / one.start
+        ratio = estimate.value / estimate.start
         if abs(math.log(abs(ratio))) < RATIO_TOLERANCE and ratio < 0:
-            yield f"{one.label} has the declared size and the other sign: is an axis reversed in a record or the platform file?"
+            yield (
+                f"{estimate.label} has the declared size and the other sign: "
+                "is an axis reversed in a record or the platform file?"
+            )
         for factor, units in UNIT_RATIOS.items():
             if ratio > 0 and abs(abs(math.log(ratio)) - math.log(factor)) < RATIO_TOLERANCE:
                 times = f"{ratio:.3g} times" if ratio > 1 else f"1/{1 / ratio:.3g} of"
-                yield f"{one.label} is {times} the declared value: are {units} mixed up, in a record or the platform file?"
+                yield f"{estimate.label} is {times} the declared value: are {units} mixed up, in a record or the platform file?"

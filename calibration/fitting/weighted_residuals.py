@@ -34,7 +34,7 @@ class AbstractPart(abc.ABC):
     Attributes:
         kind: Kind of measurement.
         problem: The residuals.
-        weight: What multiplies their squares (r, g).
+        weight: Weights of their squares (r, g).
         errors: Their errors where these were last estimated; None before.
         products: Products of residuals and slopes at the last iteration (r, g, k, k); None before the first.
         nuisances: Number of shared unknowns that are no parameters, after these; each has a standard normal prior.
@@ -54,15 +54,15 @@ class AbstractPart(abc.ABC):
 
     @abc.abstractmethod
     def estimate(self, unknowns: Unknowns) -> ResidualErrors:
-        """Errors of the residuals, estimated from what is left of them at some unknowns."""
+        """Errors of the residuals, estimated from the residuals at some unknowns."""
 
     def weigh(self, errors: ResidualErrors) -> np.ndarray:
-        """Weights (r, g) of the squares: the inverse of what the errors add up to."""
+        """Weights (r, g) of the squares: 1 / (variance times inflation)."""
         return 1 / (errors.variance * errors.inflation)
 
     @abc.abstractmethod
     def mean_squares(self) -> tuple[np.ndarray, np.ndarray]:
-        """Mean squares by group at the last iteration, and how many independent observations each stands for."""
+        """Mean squares by group at the last iteration, and their numbers of independent observations."""
 
     def renew(self, unknowns: Unknowns) -> None:
         """Estimate errors and weights anew."""
@@ -70,7 +70,7 @@ class AbstractPart(abc.ABC):
         self.weight = self.weigh(self.errors)
 
     def begin_round(self, unknowns: Unknowns) -> None:  # noqa: B027
-        """Set what stays fixed during a descent from some unknowns. Most kinds have nothing of that."""
+        """Set what stays fixed during a descent from some unknowns; most kinds have nothing to set."""
 
     @property
     def fitted(self) -> AbstractResidual:
@@ -83,7 +83,7 @@ class AbstractPart(abc.ABC):
         return eqx.tree_at(lambda problem: problem.tail, self.problem, tail, is_leaf=lambda leaf: leaf is None)
 
     def outgrown(self, unknowns: Unknowns) -> bool:
-        """Whether the problem no longer holds where the fit is; then it has been set up anew."""
+        """Whether the problem no longer holds at the present unknowns; then it has been set up anew."""
         return False
 
     def covariance_parts(self, unknowns: Unknowns, ridge: np.ndarray) -> WeightedProducts:
@@ -102,5 +102,8 @@ class AbstractPart(abc.ABC):
 
 
 def mean_square(residual: np.ndarray, loss: Loss) -> float:
-    """Mean square about zero; with Cauchy's loss that of a normal distribution of the same median magnitude."""
+    """Mean square about zero.
+
+    With Cauchy's loss it is that of a normal distribution of the same median magnitude.
+    """
     return float((1.4826 * np.median(np.abs(residual))) ** 2 if loss == "cauchy" else np.mean(residual**2))

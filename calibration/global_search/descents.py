@@ -16,23 +16,30 @@ from calibration.residuals.decays import DecayProblem
 def simulations_per_iteration(fit: Fit) -> float:
     """Simulations that an iteration in the present window counts as.
 
-    Of every record one, and one for each of its unknowns, as finite differences would take; forward mode takes less time than
-    that.
+    Each record counts once, and once more for each of its unknowns, as finite differences would take. Forward mode takes less
+    time than that.
     """
     unknowns = fit.unknowns
     return len(fit.decays.records) * (1 + unknowns.shared.shape[0] + unknowns.own.shape[1]) * fit.decays.share
 
 
 def fit_from(problem: DecayProblem, records: Sequence[Record], x: np.ndarray, report: Report = lambda *_: None) -> Fit:
-    """A fit that begins, and has its vague priors, at coordinates x."""
+    """Fit that begins at coordinates x, and has its vague priors about them."""
     fit = fit_of_decays(problem, records, jnp.asarray(x), report)
-    declared = jnp.array([np.isfinite(p.prior_deviation) for p in problem.space.free], dtype=bool)
-    fit.mean = jnp.where(declared, fit.mean, jnp.asarray(x))
+    has_prior = jnp.array([np.isfinite(p.prior_deviation) for p in problem.space.free], dtype=bool)
+    fit.mean = jnp.where(has_prior, fit.mean, jnp.asarray(x))
     return fit
 
 
 def short_fit(fit: Fit, until: np.ndarray) -> None:
-    """Least squares up to `until`, coefficients and releases free. Next to no prior: it would be the releases' error."""
+    """Least squares up to `until`, with free coefficients and releases.
+
+    The prior has next to no weight: it would become an error of the releases.
+
+    Args:
+        fit: A fit to decays.
+        until: End of the window (r,) in s.
+    """
     weight = fit.decays.record_weights(np.ones(len(fit.decays.records)), until)
     minimise_window(fit, "first cycles", weight, until, 1e-4, (0.0, 0.0), samples=1e12)
 
@@ -56,11 +63,14 @@ def compile_fit(task: Task) -> None:
 
 
 class _Diverged(Exception):
-    """A descent is where simulations give no number."""
+    """Descent that is where simulations give no number."""
 
 
 def descend(task: Task, x: np.ndarray, name: str) -> None:
-    """A whole calibration from coordinates x, given up where it is lost; J over whole records is noted at every iteration."""
+    """Calibrate from coordinates x, and give up where simulations fail.
+
+    J over whole records is noted at every iteration.
+    """
 
     def report(stage: str, *_) -> None:
         task.stage = f"{name}: {stage}"

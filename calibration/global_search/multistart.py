@@ -15,12 +15,16 @@ from calibration.global_search.task import Task, even_batch
 class MultiStart:
     """Levenberg-Marquardt from the best `finalists` of `starts` points.
 
-    The points are a scrambled Sobol sequence in the unit cube, log-uniform in positive coefficients (Owen 1998, Journal of
-    Complexity 14, 466-489), and are judged by J over the first 1.25 cycles of every record from a first guess of its release, a
-    batch of them in one simulation. It ends of its own. With one start it is least squares from a random point.
+    The points are a scrambled Sobol sequence in the unit cube, log-uniform in positive coefficients. They are ranked by J over
+    the first 1.25 cycles of every record, from a first guess of its release. A batch of points is one simulation. The search
+    ends of its own. With one start it is least squares from a random point.
 
-    The descents are one after the other, the most promising first: a Jacobian of four starts together, by vmap, takes as long
-    per start as one alone (0.96 and 0.95 s of CPU for three decays), compiles a third longer, and would wait for the slowest.
+    The descents are one after the other, the most promising first. A Jacobian of four starts together, by vmap, takes as long
+    per start as one alone (0.96 and 0.95 s of CPU for three decays). It compiles a third longer, and would wait for the
+    slowest.
+
+    References:
+        Owen 1998, Journal of Complexity 14, 466-489.
     """
 
     starts: int = 64

@@ -107,7 +107,7 @@ def search(
 
 
 def run(task: Task, method: SearchMethod, seed: int) -> Found:
-    """A search on a task, begun now.
+    """Run a search on a task, beginning now.
 
     Raises ValueError where the budget is too small for anything, SearchInterrupted with what was reached.
     """
@@ -122,22 +122,26 @@ def run(task: Task, method: SearchMethod, seed: int) -> Found:
         stopping()
         ended = "interrupted"
     history, space = task.history(), task.problem.space
-    found = None
+    result = None
     if math.isfinite(task.best):
         values = {label: float(value) for label, value in space.values(jnp.asarray(task.x)).items()}
         spent = (float(history.simulations[-1]), float(history.seconds[-1]))
-        found = Found(method.name, seed, values, task.best, *spent, history, ended)
+        result = Found(method.name, seed, values, task.best, *spent, history, ended)
     if ended == "interrupted":
-        raise SearchInterrupted(found)
-    if found is None:
+        raise SearchInterrupted(result)
+    if result is None:
         raise ValueError(f"budget: expected enough for one simulation of every record, found {task.budget}")
-    return found
+    return result
 
 
 def set_up_search(
     campaign: Campaign, free: Sequence[str] | None = None, factor: float = DEFAULT_FACTOR
 ) -> tuple[DecayProblem, tuple[Record, ...]]:
-    """What is searched, and its records. Raises InputError where there is nothing to search, or no bounds."""
+    """Set up the problem of a search, and its records.
+
+    Raises:
+        InputError: There is nothing to search, or bounds are missing.
+    """
     decays = prepare_fit(campaign, free=free).decays
     model, labels, source = decays.problem.model, decays.problem.space.labels, str(campaign.folder / "campaign.yaml")
     bounds = ranges(model, labels, dict(campaign.manifest.calibrate.bounds), factor, source)

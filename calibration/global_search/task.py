@@ -48,8 +48,8 @@ class History(NamedTuple):
 
     def until(self, objective: float) -> tuple[float, float] | None:
         """Simulations and CPU seconds when J came down to `objective`; None if it never did."""
-        there = np.flatnonzero(self.objective <= objective)
-        return (float(self.simulations[there[0]]), float(self.seconds[there[0]])) if len(there) else None
+        reached = np.flatnonzero(self.objective <= objective)
+        return (float(self.simulations[reached[0]]), float(self.seconds[reached[0]])) if len(reached) else None
 
 
 class BudgetSpent(Exception):
@@ -57,20 +57,35 @@ class BudgetSpent(Exception):
 
 
 class Task:
-    """J over points of the unit cube, until the budget is spent; the best point and the history on the way to it.
+    """Objective J over points of the unit cube, with a budget, the best point and the history.
 
-    `own` are the records' releases that points are judged with, see `objectives`; None for a search that fits them.
+    Attributes:
+        problem: The decay records and the model.
+        records: The records.
+        releases: Own unknowns of the records with which points are simulated (see `objectives`); None: the search fits them.
+        budget: The budget.
+        report: Function that is called with the progress.
+        weight: Weights of the channels (1/m, 1/rad), (r, c).
+        begins: First times of the records (s), (r,).
+        ends: Last times of the records (s), (r,).
+        size: Number of parameters.
+        batch: Number of points that are simulated at once.
+        simulations: Number of simulations so far.
+        best: Lowest J so far.
+        x: Coordinates of the best point, (p,).
+        stage: Name of the current stage.
+        calls: Number of calls of `note` so far.
     """
 
     def __init__(
         self,
         problem: DecayProblem,
         records: Sequence[Record],
-        own,
+        releases,
         budget: Budget,
         report: Callable[[Progress], None] = lambda _: None,
     ) -> None:
-        self.problem, self.records, self.own, self.budget, self.report = problem, records, own, budget, report
+        self.problem, self.records, self.releases, self.budget, self.report = problem, records, releases, budget, report
         counts, spread = scored_channels(records, problem.data)
         self.weight = jnp.asarray(np.where(counts, 1 / spread, 0.0))
         self.begins, self.ends = np.asarray(problem.data.time[:, 0]), np.array([record.time[-1] for record in records])
@@ -82,17 +97,17 @@ class Task:
         self._begun = clock.process_time()
 
     def begin(self) -> None:
-        """Its time counts from now."""
+        """Start the time of the search."""
         self._begun = clock.process_time()
 
     @property
     def seconds(self) -> float:
-        """CPU time (s) since it began, less what was spent `untimed`."""
+        """CPU time (s) since `begin`, less time spent `untimed`."""
         return clock.process_time() - self._begun
 
     @contextmanager
     def untimed(self) -> Iterator[None]:
-        """What is done within does not count as time."""
+        """Context whose time does not count."""
         before = clock.process_time()
         try:
             yield
@@ -100,47 +115,52 @@ class Task:
             self._begun += clock.process_time() - before
 
     def part(self, until: np.ndarray) -> float:
-        """The share of the records' time that lies before `until` (s, by record)."""
+        """Share of the records' time that lies before `until` (r,) in s."""
         return float(np.sum(np.asarray(until) - self.begins) / np.sum(self.ends - self.begins))
 
-    def simulate(self, x: np.ndarray, own=None, until: np.ndarray | None = None) -> np.ndarray:
-        """Return J (n,) at coordinates (n, p); FAILED_OBJECTIVE where it is no number. The simulations are counted.
+    def simulate(self, x: np.ndarray, releases=None, until: np.ndarray | None = None) -> np.ndarray:
+        """Return J (n,) at coordinates (n, p), and count the simulations.
 
-        Batches have one size, which is compiled once.
+        J is FAILED_OBJECTIVE where it is no number. Batches have one size, which is compiled once.
+
+        Args:
+            x: Coordinates (n, p).
+            releases: Own unknowns of the records; None: those of the task.
+            until: End of the samples that count (s), (r,); None: whole records.
         """
-        own, until = self.own if own is None else own, self.ends if until is None else until
+        releases, until = self.releases if releases is None else releases, self.ends if until is None else until
         batch = self.batch if len(x) > 1 else 1
 
         def run(points: np.ndarray) -> np.ndarray:
             full = jnp.asarray(np.resize(points, (batch, self.size)))
-            return np.asarray(objectives(self.problem, own, self.weight, jnp.asarray(until), full))[: len(points)]
+            return np.asarray(objectives(self.problem, releases, self.weight, jnp.asarray(until), full))[: len(points)]
 
         if batch not in self._compiled:
             with self.untimed():
                 run(x[:1])
             self._compiled.add(batch)
-        found = np.full(len(x), FAILED_OBJECTIVE)
-        for at in range(0, len(x), batch):
+        costs = np.full(len(x), FAILED_OBJECTIVE)
+        for begin in range(0, len(x), batch):
             stop_if_asked()
-            points = x[at : at + batch]
+            points = x[begin : begin + batch]
             values = run(points)
-            found[at : at + batch] = np.where(
+            costs[begin : begin + batch] = np.where(
                 np.isfinite(values), np.minimum(np.nan_to_num(values), FAILED_OBJECTIVE), FAILED_OBJECTIVE
             )
             self.simulations += len(points) * len(self.records) * self.part(until)
             if until is self.ends:
-                least = int(np.argmin(found[at : at + batch]))
-                self.note(points[least], float(found[at + least]))
+                least = int(np.argmin(costs[begin : begin + batch]))
+                self.note(points[least], float(costs[begin + least]))
             else:
                 self.check()
-        return found
+        return costs
 
     def __call__(self, shares: np.ndarray) -> np.ndarray:
         """J (n,) of points (n, p) of the unit cube."""
         return self.simulate(coordinates(self.problem.space, np.asarray(shares, float)))
 
     def note(self, x: np.ndarray, objective: float) -> None:
-        """A point's J over whole records, the best so far or not; then `check`."""
+        """Note a point's J over whole records, then `check`."""
         self.calls += 1
         if objective < min(self.best, FAILED_OBJECTIVE):
             self.best, self.x = objective, np.array(x)
@@ -161,17 +181,17 @@ class Task:
 
 
 class SearchMethod(Protocol):
-    """A way to look for the least J over the unit cube."""
+    """Method that searches the least J over the unit cube."""
 
     name: ClassVar[str]
 
     def batch_size(self, size: int) -> int:
-        """Number of points that it asks for at once, of `size` coefficients."""
+        """Number of points that the method asks for at once, with `size` coefficients."""
 
     def run(self, task: Task, random: np.random.Generator) -> None:
         """Search until done, or until the task raises BudgetSpent. All chance comes from `random`."""
 
 
 def even_batch(count: int) -> int:
-    """The size of a batch that divides `count` points evenly into as few as may be."""
+    """Size of batches that divide `count` points evenly into as few batches as possible."""
     return -(-count // -(-count // MAX_BATCH))

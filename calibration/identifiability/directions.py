@@ -72,45 +72,45 @@ class Identifiability:
     at_bound: tuple[str, ...]
 
     def sentences(self) -> tuple[str, ...]:
-        """In plain words, most important first."""
+        """The statements as sentences, most important first."""
         clear, total = int((self.spectrum < IDENTIFIABLE_DEVIATION).sum()), len(self.spectrum)
-        known = (
+        summary = (
             f"{clear} of {total} independent combinations of parameters known to better than {percent(IDENTIFIABLE_DEVIATION)}"
         )
-        said = [f"{self.source}: {known}"]
+        sentences = [f"{self.source}: {summary}"]
         if bound := self.at_bound:
             verbs = ("stands", "is") if len(bound) == 1 else ("stand", "are")
-            said.append(f"{listed(bound)} {verbs[0]} at a bound and {verbs[1]} taken as fixed there")
+            sentences.append(f"{listed(bound)} {verbs[0]} at a bound and {verbs[1]} taken as fixed there")
         if idle := self.untouched:
             it = "it" if len(idle) == 1 else "them"
-            said.append(f"no record responds to {listed(idle)}: fix {it}, or add tests that move {it}")
-        known_of: set[str] = set()
+            sentences.append(f"no record responds to {listed(idle)}: fix {it}, or add tests that move {it}")
+        stated: set[str] = set()
         for weak, fix in list(zip(self.weak, self.fixes, strict=True))[:MAX_REPORTED_DIRECTIONS]:
             # one combination may be what is known of several directions
-            again = str(weak.known) in known_of
-            said += [weak.sentence(self.source, again), *([str(fix)] if fix.share >= MIN_VARIANCE_GAIN else [])]
-            known_of.add(str(weak.known))
+            again = str(weak.known) in stated
+            sentences += [weak.sentence(self.source, again), *([str(fix)] if fix.share >= MIN_VARIANCE_GAIN else [])]
+            stated.add(str(weak.known))
         if rest := self.weak[MAX_REPORTED_DIRECTIONS:]:
             labels = listed(list(dict.fromkeys(label for weak in rest for label in weak.movement)))
-            said.append(
+            sentences.append(
                 f"{len(rest)} further combinations of {labels} are not known to {percent(IDENTIFIABLE_DEVIATION)} either"
             )
         told = [set(a.movement) for a in self.weak]
         alike: list[tuple[set[str], float]] = []  # groups with parameters in common are one
         for group in sorted(self.collinear, key=lambda group: len(group.labels)):
             # a group is at least as bad as any part of it, and a weak direction says more
-            if group.gamma > COLLINEAR and not any(other <= set(group.labels) for other in told):
+            if group.gamma > COLLINEAR and not any(part <= set(group.labels) for part in told):
                 told.append(set(group.labels))
-                met = [one for one in alike if one[0] & told[-1]]
+                met = [entry for entry in alike if entry[0] & told[-1]]
                 whole = told[-1].union(*(labels for labels, _ in met)), max(group.gamma, *(gamma for _, gamma in met), 0.0)
-                alike = [*(one for one in alike if one not in met), whole]
-        for some, gamma in alike:
+                alike = [*(entry for entry in alike if entry not in met), whole]
+        for members, gamma in alike:
             index = f"index {number(gamma, 2)}" if math.isfinite(gamma) else "index without bound"
-            said.append(
-                f"{listed([x for x in self.parameters.labels if x in some])} act alike (collinearity {index}, poor "
+            sentences.append(
+                f"{listed([x for x in self.parameters.labels if x in members])} act alike (collinearity {index}, poor "
                 f"from {COLLINEAR:.0f}): only exact records tell them apart"
             )
-        return tuple(said)
+        return tuple(sentences)
 
 
 def identifiability(
@@ -120,7 +120,15 @@ def identifiability(
     source: str = "these records",
     at_bound: Sequence[str] = (),
 ) -> Identifiability:
-    """The statement on parameters with the records' `information` and the posterior `covariance` of their coordinates."""
+    """Identifiability of parameters.
+
+    Args:
+        parameters: The free parameters.
+        information: (p, p) information of the records on their coordinates.
+        covariance: (p, p) posterior covariance of their coordinates.
+        source: Description of the records.
+        at_bound: Labels of parameters at a bound.
+    """
     labels, d = parameters.labels, np.sqrt(np.diag(covariance))
     active, untouched = active_parameters(parameters, information, at_bound)
     spectrum, axes = principal_directions(submatrix(information, active))
@@ -133,10 +141,10 @@ def identifiability(
     weak = weak_directions(parameters, information, active)
     # what no record responds to is as wide as its prior whatever is fixed, and no measure of anything
     fixes: list[Fix] = []
-    left = submatrix(covariance, active)
+    remaining = submatrix(covariance, active)
     for direction in weak:
         open_ = [label for label in direction.movement if label not in {fix.label for fix in fixes}]
-        fix, left = _best_fix(labels, left, open_ or list(direction.movement))
+        fix, remaining = _best_fix(labels, remaining, open_ or list(direction.movement))
         fixes.append(fix)
     return Identifiability(
         parameters,
@@ -155,10 +163,18 @@ def identifiability(
 
 
 def weak_directions(parameters: Parameters, information: np.ndarray, active: Sequence[int]) -> tuple[Direction, ...]:
-    """Principal directions that are not known to IDENTIFIABLE_DEVIATION, least known first, among the `active` parameters.
+    """Principal directions that are not known to IDENTIFIABLE_DEVIATION, least known first.
 
-    Those beyond VAGUE_DEVIATION are equally unknown, and any basis of what they span is as good. The basis with the fewest
-    parameters in each direction is reported (varimax: Kaiser 1958, Psychometrika 23, 187-200).
+    Directions beyond VAGUE_DEVIATION are equally unknown, and any basis of their span is as good. The basis with the fewest
+    parameters in each direction is reported (varimax).
+
+    Args:
+        parameters: The free parameters.
+        information: (p, p) information of the records.
+        active: Indices of the parameters that the records respond to.
+
+    References:
+        Kaiser 1958, Psychometrika 23, 187-200.
     """
     active = list(active)
     core = information[np.ix_(active, active)]
@@ -169,18 +185,18 @@ def weak_directions(parameters: Parameters, information: np.ndarray, active: Seq
     order = [int(k) for k in np.argsort(-deviation, kind="stable") if deviation[k] > IDENTIFIABLE_DEVIATION]
     reach = np.abs(axes) * np.minimum(deviation, VAGUE_DEVIATION)
     named = [[int(i) for i in np.flatnonzero(reach[:, k] >= min(MIN_NAMED_DEVIATION, reach[:, k].max()))] for k in order]
-    found = []
-    for k, mine in zip(order, named, strict=True):
-        known = _combination(parameters, core, active, mine) if len(mine) > 1 else None
-        if known is None and len(mine) > 1:
+    directions = []
+    for k, members in zip(order, named, strict=True):
+        combination = _combination(parameters, core, active, members) if len(members) > 1 else None
+        if combination is None and len(members) > 1:
             # what other weak directions share with this one may be known together with it
-            joint = sorted(set(mine).union(*(other for other in named if set(other) & set(mine))))
-            known = _combination(parameters, core, active, joint)
-        change = (axes[:, k] * parameters.relative()[active])[mine]
+            joint = sorted(set(members).union(*(others for others in named if set(others) & set(members))))
+            combination = _combination(parameters, core, active, joint)
+        change = (axes[:, k] * parameters.relative()[active])[members]
         change *= 0.1 / change[np.abs(change).argmax()] * np.sign(change[0] * change[np.abs(change).argmax()])
-        movement = {parameters.labels[active[i]]: float(c) for i, c in zip(mine, change, strict=True)}
-        found.append(Direction(movement, float(deviation[k]), known))
-    return tuple(found)
+        movement = {parameters.labels[active[i]]: float(c) for i, c in zip(members, change, strict=True)}
+        directions.append(Direction(movement, float(deviation[k]), combination))
+    return tuple(directions)
 
 
 def identifiability_at(
@@ -192,52 +208,73 @@ def identifiability_at(
     width: np.ndarray,
     source: str,
 ) -> tuple[Spread, Identifiability]:
-    """Covariance and statement at coordinates (p,); `parts`, `ridge` and `width` are the arguments of `sandwich_covariance`."""
-    found = sandwich_covariance(*parts, ridge, width)
+    """Covariance of all unknowns, and identifiability of the parameters, at their coordinates.
+
+    Args:
+        space: The free parameters.
+        model: A model with these parameters.
+        x: Their coordinates (p,).
+        parts: First four arguments of `sandwich_covariance`.
+        ridge: As in `sandwich_covariance`.
+        width: As in `sandwich_covariance`.
+        source: Description of the records.
+    """
+    spread = sandwich_covariance(*parts, ridge, width)
     values = np.array([float(p.transform.forward(jnp.asarray(c))) for p, c in zip(space.free, x, strict=True)])
     units = tuple(model.about(label).unit for label in space.labels)
     bound = [p.label for p, c in zip(space.free, x, strict=True) if p.transform.at_bound(float(c))]
     laws = law_labels(model)
     families = tuple(parameter_family(label, laws) for label in space.labels)
     parameters = Parameters(space.labels, values, slopes(space, x), units, families)
-    posterior = found.covariance[: len(x), : len(x)]
-    return found, identifiability(parameters, shared_information(*parts, len(x)), posterior, source, bound)
+    posterior = spread.covariance[: len(x), : len(x)]
+    return spread, identifiability(parameters, shared_information(*parts, len(x)), posterior, source, bound)
 
 
 def active_parameters(
     parameters: Parameters, information: np.ndarray, at_bound: Sequence[str]
 ) -> tuple[list[int], tuple[str, ...]]:
-    """Parameters that the records respond to, and the labels of those where even alone a factor of 4.5 would go unseen."""
+    """Indices of parameters that the records respond to, and labels of the others.
+
+    A change of one of the others by a factor of 4.5 would go unseen even if it alone were unknown. Parameters at a bound are
+    in neither.
+    """
     free = [i for i, label in enumerate(parameters.labels) if label not in at_bound]
-    seen = [i for i in free if information[i, i] > 1 / VAGUE_DEVIATION**2]
-    return seen, tuple(parameters.labels[i] for i in free if i not in seen)
+    responsive = [i for i in free if information[i, i] > 1 / VAGUE_DEVIATION**2]
+    return responsive, tuple(parameters.labels[i] for i in free if i not in responsive)
 
 
-def _combination(parameters: Parameters, core: np.ndarray, active: Sequence[int], mine: Sequence[int]) -> Combination | None:
-    """The best known combination of some parameters, whatever the others are; None beyond IDENTIFIABLE_DEVIATION."""
-    rest = [i for i in range(len(core)) if i not in mine]
-    across = core[np.ix_(rest, mine)]
+def _combination(parameters: Parameters, core: np.ndarray, active: Sequence[int], members: Sequence[int]) -> Combination | None:
+    """Best known combination of some parameters, whatever the others are.
+
+    None where it is not known to IDENTIFIABLE_DEVIATION.
+    """
+    rest = [i for i in range(len(core)) if i not in members]
+    across = core[np.ix_(rest, members)]
     deviation, axes = principal_directions(
-        core[np.ix_(mine, mine)] - across.T @ pseudo_inverse(core[np.ix_(rest, rest)]) @ across
+        core[np.ix_(members, members)] - across.T @ pseudo_inverse(core[np.ix_(rest, rest)]) @ across
     )
     if not deviation[0] < IDENTIFIABLE_DEVIATION:
         return None
-    at = [active[i] for i in mine]
-    labels, units = [parameters.labels[i] for i in at], {parameters.unit[i] for i in at}
-    value, slope, share = parameters.value[at], parameters.slope[at], axes[:, 0]
-    alike = len(units) == 1 and len({parameters.family[i] for i in at}) == 1
+    indices = [active[i] for i in members]
+    labels, units = [parameters.labels[i] for i in indices], {parameters.unit[i] for i in indices}
+    value, slope, share = parameters.value[indices], parameters.slope[indices], axes[:, 0]
+    alike = len(units) == 1 and len({parameters.family[i] for i in indices}) == 1
     product = not alike and bool((value > 0).all())
-    raw = share / parameters.relative()[at] if product else share / slope
+    raw = share / parameters.relative()[indices] if product else share / slope
     leading = int(np.abs(raw if alike or product else share).argmax())
     weight = raw / raw[leading]
     level = float(np.prod(value**weight) if product else weight @ value)
     small = float(deviation[0] / abs(raw[leading]))
-    unit = "" if product else parameters.unit[at[leading]]
+    unit = "" if product else parameters.unit[indices[leading]]
     return Combination(dict(zip(labels, map(float, weight), strict=True)), product, level, small, unit)
 
 
 def _best_fix(labels: Sequence[str], covariance: np.ndarray, candidates: Sequence[str]) -> tuple[Fix, np.ndarray]:
-    """The candidate that takes most from the summed variance of the others, and the covariance (p, p) once it is fixed."""
+    """Candidate that takes most from the summed variance of the others when it is fixed.
+
+    Returns:
+        The candidate, and the covariance (p, p) once it is fixed.
+    """
 
     def fixed(i: int) -> np.ndarray:
         if not covariance[i, i] > ZERO_VARIANCE:
@@ -248,6 +285,6 @@ def _best_fix(labels: Sequence[str], covariance: np.ndarray, candidates: Sequenc
     lost = {i: float(np.delete(np.diag(fixed(i)), i).sum()) for i in map(labels.index, candidates)}
     best = max(lost, key=lambda i: lost[i])
     others = float(np.delete(np.diag(covariance), best).sum())
-    left = covariance - fixed(best)
-    after = {x: float(np.sqrt(max(left[i, i], 0.0))) for x in candidates if (i := labels.index(x)) != best}
-    return Fix(labels[best], lost[best], lost[best] / others if others > 0 else 0.0, after), left
+    remaining = covariance - fixed(best)
+    after = {x: float(np.sqrt(max(remaining[i, i], 0.0))) for x in candidates if (i := labels.index(x)) != best}
+    return Fix(labels[best], lost[best], lost[best] / others if others > 0 else 0.0, after), remaining

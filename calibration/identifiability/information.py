@@ -14,11 +14,20 @@ WEAK_PRIOR_ROUNDING = 1e-14  # of all unknowns with their priors: a weak prior t
 def shared_information(
     products: np.ndarray, weight: np.ndarray, variance: np.ndarray, inflation: np.ndarray, shared: int
 ) -> np.ndarray:
-    """Information (p, p) of the shared coordinates; the records' own unknowns eliminated by a Schur complement each.
+    """Information (p, p) of the shared coordinates, with the records' own unknowns eliminated.
 
-    `products` (record, channel, k, k) are the [J r]^T [J r]; `weight`, `variance` and `inflation` (record, channel) as in
-    `sandwich_covariance`, whose sandwich this is the inverse of, without the prior: H S^-1 H (Godambe 1960, Annals of
-    Mathematical Statistics 31, 1208-1211), which is J^T J / sigma^2 where every record was weighed by its noise.
+    Each record's unknowns are eliminated by a Schur complement. The information is H S^-1 H, the inverse of the sandwich of
+    `sandwich_covariance` without the prior. It is J^T J / sigma^2 where every record was weighed by its noise.
+
+    Args:
+        products: Products [J r]^T [J r] by record and channel, (r, c, k, k).
+        weight: As in `sandwich_covariance`, (r, c).
+        variance: As in `sandwich_covariance`, (r, c).
+        inflation: As in `sandwich_covariance`, (r, c).
+        shared: Number p of shared coordinates.
+
+    References:
+        Godambe 1960, Annals of Mathematical Statistics 31, 1208-1211.
     """
     hessian, scatter = np.zeros((shared, shared)), np.zeros((shared, shared))
     power = weight**2 * np.maximum(variance, MIN_VARIANCE) * inflation
@@ -38,22 +47,30 @@ def principal_directions(information: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def collinearity(information: np.ndarray) -> float:
-    """gamma = 1 / sqrt(lambda_min of the information scaled to a unit diagonal): 1 for orthogonal columns, inf for dependent
-    ones (Brun, Reichert and Kuensch 2001, Water Resources Research 37, 1015-1030)."""
+    """Collinearity index of parameters: 1 for orthogonal columns, inf for dependent ones.
+
+    gamma = 1 / sqrt(lambda_min of the information scaled to a unit diagonal).
+
+    References:
+        Brun, Reichert and Kuensch 2001, Water Resources Research 37, 1015-1030.
+    """
     scale = np.sqrt(np.diag(information))
     least = np.linalg.eigvalsh(information / np.outer(scale, scale))[0]
     return float(1 / np.sqrt(least)) if least > 1e-14 else np.inf
 
 
 def submatrix(matrix: np.ndarray, keep: list[int]) -> np.ndarray:
-    """The matrix with all but some rows and columns zero."""
+    """The matrix with all rows and columns zero but those in `keep`."""
     mask = np.isin(np.arange(len(matrix)), list(keep))
     return np.where(np.outer(mask, mask), matrix, 0.0)
 
 
 def pseudo_inverse(matrix: np.ndarray, rcond: float = ROUNDING) -> np.ndarray:
-    """Pseudo-inverse of a positive semi-definite matrix, whatever the units of its rows. What is no more than `rcond` of the
-    largest, once scaled, is taken for rounding, and what is not there at all stays at zero."""
+    """Pseudo-inverse of a positive semi-definite matrix, whatever the units of its rows.
+
+    The matrix is scaled to a unit diagonal. Eigenvalues of no more than `rcond` of the largest are taken for rounding. Rows
+    with a zero diagonal stay zero.
+    """
     d = np.diag(matrix)
     scale = np.where(d > 0, 1 / np.sqrt(np.where(d > 0, d, 1.0)), 0.0)
     both = np.outer(scale, scale)
@@ -61,15 +78,16 @@ def pseudo_inverse(matrix: np.ndarray, rcond: float = ROUNDING) -> np.ndarray:
 
 
 def deviations_of(values: np.ndarray, largest: float) -> np.ndarray:
-    """1 / sqrt of information; inf for what is no more than rounding."""
-    there = values > 16 * np.finfo(float).eps * len(values) * largest
-    return np.where(there, 1 / np.sqrt(np.where(there, values, 1.0)), np.inf)
+    """Standard deviations 1 / sqrt(information); inf where the information is no more than rounding."""
+    significant = values > 16 * np.finfo(float).eps * len(values) * largest
+    return np.where(significant, 1 / np.sqrt(np.where(significant, values, 1.0)), np.inf)
 
 
 def varimax(axes: np.ndarray) -> np.ndarray:
-    """The orthonormal basis of the same space (p, k) with the largest variance of squared entries, by fixed-point steps.
+    """Orthonormal basis (p, k) of the same space with the largest variance of squared entries.
 
-    With columns of unit length that is the largest sum of fourth powers, a convex function: no step makes it smaller.
+    It is found by fixed-point steps. With columns of unit length that is the largest sum of fourth powers, a convex function:
+    no step makes it smaller.
     """
     size = axes.shape[1]
     if size < 2:

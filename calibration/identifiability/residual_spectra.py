@@ -1,8 +1,9 @@
 """Spectra of residuals, for standard deviations under coloured errors.
 
-The standard deviation of an estimate rests on the scatter of its score J^T e, whose variance is that of the residual at the
-frequencies of the slope J: of a decay, near its natural frequency. White noise of the same total variance has most of it
-elsewhere; the integrated autocorrelation is the spectrum at frequency zero, and misses both a peak and its absence.
+The standard deviation of an estimate rests on the scatter of its score J^T e. The variance of the score is that of the residual
+at the frequencies of the slope J, near the natural frequency of a decay. White noise of the same total variance has
+most of its variance elsewhere. The integrated autocorrelation is the spectrum at frequency zero, and misses both a peak and its
+absence.
 """
 
 from collections.abc import Sequence
@@ -21,7 +22,7 @@ class Periodogram(NamedTuple):
         frequency: Frequencies (Hz), (f,).
         power: |FFT|^2 / n, (f,); its mean over all n frequencies is the mean square.
         freedom: Fraction (0 to 1) of the power that the fit has left, (f,).
-        number: How many of the n frequencies each stands for, (f,).
+        number: Number of the n frequencies that each stands for, (f,).
     """
 
     frequency: np.ndarray
@@ -31,15 +32,22 @@ class Periodogram(NamedTuple):
 
     @property
     def variance(self) -> float:
-        """Variance of the errors, from that of the residuals, of which the fit has taken away some."""
+        """Variance of the errors: that of the residuals, raised for the share that the fit has absorbed."""
         return float(max((self.number * self.power).sum() / (self.number * self.freedom).sum(), MIN_VARIANCE))
 
 
 class NoiseColour(NamedTuple):
-    """Density, relative to the variance, of a flat floor and one resonance: g^2 / ((f - f0)^2 + g^2) and its mirror image.
+    """Spectral density relative to the variance: a flat floor and one resonance.
 
-    With f0 = 0 it is an autoregression of first order, of correlation time 1 / (2 pi g); with f0 > 0, noise that rings at f0
-    with damping ratio g / f0; with `peak` 0, white.
+    The resonance is g^2 / ((f - f0)^2 + g^2) and its mirror image. With f0 = 0 it is an autoregression of first order, of
+    correlation time 1 / (2 pi g). With f0 > 0 it is noise that rings at f0 with damping ratio g / f0. With `peak` 0 the noise
+    is white.
+
+    Attributes:
+        floor: Density of the floor.
+        peak: Factor of the resonance.
+        centre: Frequency f0 of the resonance (Hz).
+        width: Half width g of the resonance (Hz).
     """
 
     floor: float
@@ -48,7 +56,7 @@ class NoiseColour(NamedTuple):
     width: float
 
     def density(self, frequency: np.ndarray) -> np.ndarray:
-        """(f,) at `frequency` (Hz)."""
+        """Density (f,) at `frequency` (Hz)."""
         sides = [self.width**2 / ((frequency - sign * self.centre) ** 2 + self.width**2) for sign in (1, -1)]
         return self.floor + self.peak * (sides[0] + sides[1])
 
@@ -73,8 +81,8 @@ def periodogram(residual: np.ndarray, leverage: np.ndarray, step: float) -> Peri
 def fit_colours(groups: Sequence[Sequence[Periodogram]]) -> list[tuple[NoiseColour, np.ndarray]]:
     """Colour and variances of groups of residuals by `whittle`.
 
-    All groups have one colour, as where a basin is not still, unless they differ by more than chance, as where a model's error
-    is in the motion that was released.
+    All groups have one colour unless they differ by more than chance. One colour is that of a basin that is not still. Colours
+    differ where a model's error is in the motion that was released.
 
     Args:
         groups: Periodograms by group.
@@ -82,9 +90,9 @@ def fit_colours(groups: Sequence[Sequence[Periodogram]]) -> list[tuple[NoiseColo
     Returns:
         Colour and variances of each group.
     """
-    whole, apart = whittle([one for group in groups for one in group]), [whittle(group) for group in groups]
-    if len(groups) == 1 or sum(one.misfit for one in apart) < whole.misfit:
-        return [(one.colour, one.variance) for one in apart]
+    whole, apart = whittle([spectrum for group in groups for spectrum in group]), [whittle(group) for group in groups]
+    if len(groups) == 1 or sum(fit.misfit for fit in apart) < whole.misfit:
+        return [(fit.colour, fit.variance) for fit in apart]
     ends = np.cumsum([len(group) for group in groups])[:-1]
     return [(whole.colour, variance) for variance in np.split(whole.variance, ends)]
 
@@ -104,32 +112,38 @@ class SpectralFit(NamedTuple):
     misfit: float
 
 
-def whittle(found: Sequence[Periodogram]) -> SpectralFit:
+def whittle(spectra: Sequence[Periodogram]) -> SpectralFit:
     """Colour of residuals of one kind, and their variances, one for all unless they clearly differ.
 
-    Largest of -sum over frequencies of (d ln S + I / S) (Whittle 1953, Arkiv foer Matematik 2, 423-434), in which I is the
-    power and d the degrees of freedom that the fit has left of it: E[I] = d S, and a gamma density of shape d in place of the
-    exponential one, as restricted likelihood has it. A fit takes away most of the residual at the very frequency of the decay,
-    where the scatter matters: what is left beside it says how much it was.
+    The colour S is that of the largest -sum over frequencies of (d ln S + I / S). I is the power, and d the degrees of freedom
+    that the fit has left of it, so that E[I] = d S. I has a gamma density of shape d in place of the exponential one, as in
+    restricted likelihood. A fit takes away most of the residual at the very frequency of the decay, where the scatter matters.
+    The residual beside that frequency says how much it was.
+
+    References:
+        Whittle 1953, Arkiv foer Matematik 2, 423-434.
     """
-    count = np.array([(one.number * one.freedom).sum() for one in found])
-    own = np.array([one.variance for one in found])
-    common = np.full(len(found), float((count * own).sum() / count.sum()))
-    tried = [_whittle(found, variance) for variance in ([common] if len(found) == 1 else [common, own])]
+    count = np.array([(spectrum.number * spectrum.freedom).sum() for spectrum in spectra])
+    separate = np.array([spectrum.variance for spectrum in spectra])
+    common = np.full(len(spectra), float((count * separate).sum() / count.sum()))
+    tried = [_whittle(spectra, variance) for variance in ([common] if len(spectra) == 1 else [common, separate])]
     price = 0.5 * float(np.log(0.5 * count.sum()))
-    misfit = [one + price * numbers for (_, one), numbers in zip(tried, (1, len(found)))]
+    misfit = [value + price * numbers for (_, value), numbers in zip(tried, (1, len(spectra)))]
     best = int(np.argmin(misfit))
-    return SpectralFit(tried[best][0], (common, own)[best], misfit[best])
+    return SpectralFit(tried[best][0], (common, separate)[best], misfit[best])
 
 
-def _whittle(found: Sequence[Periodogram], variance: np.ndarray) -> tuple[NoiseColour, float]:
-    """The colour with given variances, and its misfit."""
-    frequency = np.concatenate([one.frequency for one in found])
-    power = np.concatenate([one.power / v for one, v in zip(found, variance, strict=True)])
-    freedom = np.concatenate([one.freedom for one in found])
-    half = 0.5 * np.concatenate([one.number for one in found])
-    level = sum(float(np.log(v) * (0.5 * one.number * one.freedom).sum()) for one, v in zip(found, variance, strict=True))
-    first, last = min(one.frequency[1] for one in found), float(frequency.max())
+def _whittle(spectra: Sequence[Periodogram], variance: np.ndarray) -> tuple[NoiseColour, float]:
+    """Colour with given variances, and its misfit."""
+    frequency = np.concatenate([spectrum.frequency for spectrum in spectra])
+    power = np.concatenate([spectrum.power / v for spectrum, v in zip(spectra, variance, strict=True)])
+    freedom = np.concatenate([spectrum.freedom for spectrum in spectra])
+    half = 0.5 * np.concatenate([spectrum.number for spectrum in spectra])
+    level = sum(
+        float(np.log(v) * (0.5 * spectrum.number * spectrum.freedom).sum())
+        for spectrum, v in zip(spectra, variance, strict=True)
+    )
+    first, last = min(spectrum.frequency[1] for spectrum in spectra), float(frequency.max())
 
     def colour(z: np.ndarray) -> NoiseColour:
         return NoiseColour(*map(float, np.exp(z)))
@@ -141,19 +155,22 @@ def _whittle(found: Sequence[Periodogram], variance: np.ndarray) -> tuple[NoiseC
     high = frequency > 0.5 * last
     floor = min(max(float((half * power)[high].sum() / (half * freedom)[high].sum()), 1e-9), 1.0)
     # starts at the largest of what stands out once its neighbours are taken together, and at low frequencies
-    share = [np.convolve(one.power, np.ones(5), "same") / np.convolve(one.freedom, np.ones(5), "same") for one in found]
+    share = [
+        np.convolve(spectrum.power, np.ones(5), "same") / np.convolve(spectrum.freedom, np.ones(5), "same")
+        for spectrum in spectra
+    ]
     tall = [float(x.max() / v) for x, v in zip(share, variance, strict=True)]
-    at = int(np.argmax(tall))
-    top, place = max(tall[at], 2 * floor), max(float(found[at].frequency[int(np.argmax(share[at]))]), first)
+    tallest = int(np.argmax(tall))
+    top, centre = max(tall[tallest], 2 * floor), max(float(spectra[tallest].frequency[int(np.argmax(share[tallest]))]), first)
     limits = [
         (np.log(floor) - 7, 3.0),
         (np.log(floor) - 12, np.log(top) + 5),
         (np.log(0.05 * first), np.log(last)),
         (np.log(0.3 * first), np.log(last)),
     ]
-    starts = [(place, 2 * first), (place, 0.3 * place), (0.1 * first, first), (0.1 * first, 0.1 * last)]
+    starts = [(centre, 2 * first), (centre, 0.3 * centre), (0.1 * first, first), (0.1 * first, 0.1 * last)]
     tried = [minimize(misfit, np.log([floor, top, *start]), method="L-BFGS-B", bounds=limits) for start in starts]
-    best, white = min(tried, key=lambda one: one.fun), NoiseColour(1.0, 0.0, 0.0, float(first))
+    best, white = min(tried, key=lambda result: result.fun), NoiseColour(1.0, 0.0, 0.0, float(first))
     flat = level + float(np.sum(half * power))
     # three numbers more than white noise has, one of them searched for over all frequencies: among so many one stands out by
     # chance, and does not count until it pays for them
@@ -162,7 +179,14 @@ def _whittle(found: Sequence[Periodogram], variance: np.ndarray) -> tuple[NoiseC
 
 
 def score_covariance(slope: np.ndarray, variance: float, colour: NoiseColour, step: float) -> np.ndarray:
-    """Covariance (k, k) of J^T e for slopes J (n, k) and errors e of this colour: sum_f J^(f)* J^(f)^T S(f) / n."""
+    """Covariance (k, k) of J^T e, sum_f J^(f)* J^(f)^T S(f) / n.
+
+    Args:
+        slope: Slopes J (n, k).
+        variance: Variance of the errors e.
+        colour: Colour of the errors.
+        step: Sampling interval (s).
+    """
     n = len(slope)
     wave, frequency = np.fft.rfft(slope, axis=0), np.fft.rfftfreq(n, step)
     count = np.full(len(frequency), 2.0)

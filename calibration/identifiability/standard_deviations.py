@@ -27,21 +27,26 @@ class Spread(NamedTuple):
 
 
 def gauss_newton_matrix(products: np.ndarray, shared: int) -> np.ndarray:
-    """Gauss-Newton matrix of all unknowns from the records' own (record, k, k), whose last row and column are the residual."""
+    """Gauss-Newton matrix of all unknowns, from the products of each record.
+
+    Args:
+        products: Products by record (r, k, k), whose last row and column are the residual's.
+        shared: Number of shared unknowns, which come first.
+    """
     records, size = products.shape[0], products.shape[1] - 1
-    own = size - shared
-    total = np.zeros((shared + records * own,) * 2)
+    own_count = size - shared
+    total = np.zeros((shared + records * own_count,) * 2)
     for i, block in enumerate(products[:, :-1, :-1]):
-        mine = slice(shared + i * own, shared + (i + 1) * own)
+        own_rows = slice(shared + i * own_count, shared + (i + 1) * own_count)
         total[:shared, :shared] += block[:shared, :shared]
-        total[:shared, mine] += block[:shared, shared:]
-        total[mine, :shared] += block[shared:, :shared]
-        total[mine, mine] += block[shared:, shared:]
+        total[:shared, own_rows] += block[:shared, shared:]
+        total[own_rows, :shared] += block[shared:, :shared]
+        total[own_rows, own_rows] += block[shared:, shared:]
     return total
 
 
 def correlated_samples(residual: np.ndarray) -> float:
-    """Integrated autocorrelation of a residual: how many samples count as one. At least 1.
+    """Integrated autocorrelation of a residual, at least 1: number of samples that count as one.
 
     Initial positive sequence of paired autocorrelations (Geyer 1992, Statistical Science 7, 473-483, section 3.3).
     """
@@ -65,16 +70,23 @@ def sandwich_covariance(
     ridge: np.ndarray,
     width: np.ndarray,
 ) -> Spread:
-    """Covariance of the estimates by the sandwich H^-1 S H^-1 (White 1982, Econometrica 50, 1-25, theorem 3.2).
+    """Covariance of the estimates by the sandwich H^-1 S H^-1.
 
-    `products` (record, channel, k, k) are the [J r]^T [J r], `weight` what multiplied their squares in the fit, `variance`
-    that of the residuals, `inflation` how many of their samples count as one. `ridge` is the prior's row in the fit, `width`
-    its standard deviation: a parameter that no record touches is reported with that.
+    Args:
+        products: Products [J r]^T [J r] by record and channel, (r, c, k, k).
+        weight: Weights of the squared residuals in the fit, (r, c).
+        variance: Variances of the residuals, (r, c).
+        inflation: Number of correlated samples that count as one, (r, c).
+        ridge: Square roots of the priors' weights in the fit, (p,).
+        width: Standard deviations of the priors, (p,). A parameter that no record touches is reported with this.
+
+    References:
+        White 1982, Econometrica 50, 1-25, theorem 3.2.
     """
     shared = len(ridge)
     hessian = gauss_newton_matrix(np.einsum("rckl,rc->rkl", products, weight), shared)
     scatter = gauss_newton_matrix(np.einsum("rckl,rc->rkl", products, weight**2 * variance * inflation), shared)
-    own = np.zeros(len(hessian) - shared)
-    square, wide = np.concatenate([ridge**2, own]), np.concatenate([width**2, own])
+    zeros = np.zeros(len(hessian) - shared)
+    square, wide = np.concatenate([ridge**2, zeros]), np.concatenate([width**2, zeros])
     bread = pseudo_inverse(hessian + np.diag(square), WEAK_PRIOR_ROUNDING)
     return Spread(bread @ (scatter + np.diag(wide * square**2)) @ bread, shared)

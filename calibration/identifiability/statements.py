@@ -11,7 +11,15 @@ MIN_SHOWN_WEIGHT = 0.005  # weight of a combination, the largest 1, that is not 
 
 
 class Parameters(NamedTuple):
-    """The free parameters where the fit ended; `slope` is d value / d coordinate, `family` that of `parameter_family`."""
+    """The free parameters where the fit ended.
+
+    Attributes:
+        labels: Labels.
+        value: Values (p,).
+        slope: d value / d coordinate (p,).
+        unit: Units.
+        family: Families, by `parameter_family`.
+    """
 
     labels: tuple[str, ...]
     value: np.ndarray
@@ -25,10 +33,17 @@ class Parameters(NamedTuple):
 
 
 class Combination(NamedTuple):
-    """A combination that the records know: the sum of weight times value in `unit`, or the product of value to the weight.
+    """Combination of parameters that the records determine.
 
-    The largest weight is 1 (of a sum in mixed units, that of the parameter that counts most: its unit is the sum's).
-    `standard_deviation` is in `unit` for a sum, relative for a product.
+    It is the sum of weight times value, or the product of values to the power of their weights. The largest weight is 1. In a
+    sum of mixed units, the weight of the parameter that counts most is 1, and the sum has its unit.
+
+    Attributes:
+        weights: Weights by label.
+        product: Whether it is a product.
+        value: Value, in `unit`.
+        standard_deviation: Standard deviation, in `unit` for a sum, relative for a product.
+        unit: Unit of a sum.
     """
 
     weights: dict[str, float]
@@ -54,14 +69,25 @@ class Combination(NamedTuple):
 
 
 class Direction(NamedTuple):
-    """A way to move parameters that the records do not see: relative changes, the largest 10 %, and what is known."""
+    """Change of parameters that the records do not see.
+
+    Attributes:
+        movement: Relative changes by label, the largest 10 %.
+        standard_deviation: Standard deviation in the coordinates, along the direction with unit length.
+        known: Combination of these parameters that is known; None where there is none.
+    """
 
     movement: dict[str, float]
-    standard_deviation: float  # in the coordinates, along the direction with unit length
+    standard_deviation: float
     known: Combination | None
 
     def sentence(self, source: str, again: bool = False) -> str:
-        """In words; what is known instead is not said `again`."""
+        """Sentence on the direction.
+
+        Args:
+            source: Description of the records.
+            again: Whether the known combination was stated before, and is left out.
+        """
         labels = list(self.movement)
         if len(labels) == 1:
             if self.standard_deviation > VAGUE_DEVIATION:
@@ -70,14 +96,20 @@ class Direction(NamedTuple):
         verb = "cannot tell" if self.standard_deviation > 1 else "can hardly tell"
         apart = f"{labels[0]} from {labels[1]}" if len(labels) == 2 else f"{listed(labels)} from one another"
         moves = listed([f"{label} {100 * change:+.2g} %" for label, change in self.movement.items()])
-        known = str(self.known or "no combination of them is known either")
-        said = f"{source} {verb} {apart}. Together {moves} leave the records as they are"
-        return said if again else f"{said}. {known[0].upper()}{known[1:]}"
+        remark = str(self.known or "no combination of them is known either")
+        sentence = f"{source} {verb} {apart}. Together {moves} leave the records as they are"
+        return sentence if again else f"{sentence}. {remark[0].upper()}{remark[1:]}"
 
 
 class Fix(NamedTuple):
-    """Which parameter of a weak direction to fix or to give a prior, and what the summed variance of the others loses by it
-    (in the coordinates; `share` of it). `after`: deviations of the direction's other parameters once it is fixed."""
+    """Parameter of a weak direction to fix, or to give a prior.
+
+    Attributes:
+        label: Label of the parameter.
+        reduction: Decrease of the summed variance of the others, in the coordinates.
+        share: This decrease as a fraction of that variance.
+        after: Standard deviations of the direction's other parameters once it is fixed, by label.
+    """
 
     label: str
     reduction: float
@@ -85,8 +117,8 @@ class Fix(NamedTuple):
     after: dict[str, float]
 
     def __str__(self) -> str:
-        known = listed([f"{label} to {percent(deviation)}" for label, deviation in self.after.items()])
-        gain = f"The others are then known better: {known}" if known else "The others are then known better"
+        deviations = listed([f"{label} to {percent(deviation)}" for label, deviation in self.after.items()])
+        gain = f"The others are then known better: {deviations}" if deviations else "The others are then known better"
         ways = "fix it (`calibrate.fixed`) or give it a prior (`calibrate.priors`)"
         return f"if {self.label} is known from elsewhere, {ways}. {gain}"
 

@@ -4,11 +4,13 @@ from collections.abc import Collection
 
 
 def parameter_family(label: str, laws: Collection[str]) -> str:
-    """What a parameter does to the platform: inertia, damping, restoring, or how one of them depends on sea or motion.
+    """Family of a parameter: "inertia", "damping", "restoring" or "exponent".
+
+    An exponent says how a coefficient depends on the sea or the motion.
 
     Args:
         label: Label of the parameter.
-        laws: Labels of what laws add to coefficients (`law_labels`).
+        laws: Labels of the parameters that laws add to coefficients (`law_labels`).
     """
     if label in laws:
         return "exponent"

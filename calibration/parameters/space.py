@@ -59,10 +59,13 @@ class ParameterSpace(NamedTuple):
 
     @property
     def prior(self) -> tuple[Float[Array, " p"], np.ndarray]:
-        """Mean and standard deviation of the coordinates: as declared, else VAGUE_DEVIATION about where they start."""
-        declared = [math.isfinite(p.prior_deviation) for p in self.free]
-        mean = jnp.array([p.prior_mean if known else s for p, s, known in zip(self.free, self.start, declared)])
-        return mean, np.array([p.prior_deviation if known else VAGUE_DEVIATION for p, known in zip(self.free, declared)])
+        """Means and standard deviations of the coordinates.
+
+        A parameter without a stated prior has VAGUE_DEVIATION about its start.
+        """
+        with_prior = [math.isfinite(p.prior_deviation) for p in self.free]
+        mean = jnp.array([p.prior_mean if stated else s for p, s, stated in zip(self.free, self.start, with_prior)])
+        return mean, np.array([p.prior_deviation if stated else VAGUE_DEVIATION for p, stated in zip(self.free, with_prior)])
 
     def values(self, x: Float[Array, " p"]) -> dict[str, Float[Array, ""]]:
         """Parameter values at coordinates."""
@@ -76,8 +79,8 @@ class ParameterSpace(NamedTuple):
 def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
     """Labels of the parameters that are free by default in decays of some degrees of freedom.
 
-    They are coefficients of the members, and the lumped damping and added mass of these degrees of freedom. Parameters declared
-    as zero stay zero. Laws over the sea state mean nothing in still water. How drag depends on the motion (`drag_`) is free
+    They are coefficients of the members, and the lumped damping and added mass of these degrees of freedom. Parameters of value
+    zero stay zero. Laws over the sea state mean nothing in still water. How drag depends on the motion (`drag_`) is free
     only where it is asked for.
 
     Args:
@@ -103,17 +106,28 @@ def match_free_labels(
     fixed: Sequence[str] = (),
     source: str = "campaign.yaml",
 ) -> tuple[str, ...]:
-    """Labels of the free parameters, from patterns such as `column.*`. Raises InputError for a pattern that fits none."""
-    known = tuple(model.values)
+    """Labels of the free parameters, from patterns such as `column.*`.
+
+    Args:
+        model: The model.
+        released: Degrees of freedom of the decays, for `default_free`.
+        free: Patterns of free parameters; None: `default_free`.
+        fixed: Patterns of parameters that are not free.
+        source: Name of the file that errors refer to.
+
+    Raises:
+        InputError: A pattern matches no parameter.
+    """
+    names = tuple(model.values)
     problems = [
-        Problem(f"calibrate.{key}", f"a parameter of this platform ({', '.join(known)})", pattern, _hint(pattern, known, model))
+        Problem(f"calibrate.{key}", f"a parameter of this platform ({', '.join(names)})", pattern, _hint(pattern, names, model))
         for key, patterns in (("free", free or ()), ("fixed", fixed))
         for pattern in patterns
-        if not fnmatch.filter(known, pattern)
+        if not fnmatch.filter(names, pattern)
     ]
     if problems:
         raise InputError(source, problems)
-    chosen = default_free(model, released) if free is None else [k for k in known if any(fnmatch.fnmatch(k, p) for p in free)]
+    chosen = default_free(model, released) if free is None else [k for k in names if any(fnmatch.fnmatch(k, p) for p in free)]
     return tuple(label for label in chosen if not any(fnmatch.fnmatch(label, p) for p in fixed))
 
 
@@ -126,8 +140,8 @@ def parameter_space(
 ) -> ParameterSpace:
     """Set up free parameters with their transforms, bounds and priors.
 
-    A parameter that cannot be negative is on a logarithmic scale, by default within a factor of 1000 of its start and
-    within its physical range. A value of 0 starts in the middle of that range.
+    A parameter that cannot be negative is on a logarithmic scale. By default it stays within a factor of 1000 of its start
+    and within its physical range. A value of 0 starts in the middle of that range.
 
     Args:
         model: The model, whose values are the start.
@@ -143,12 +157,12 @@ def parameter_space(
         InputError: If bounds or priors are invalid.
     """
     bounds, priors, free, problems = bounds or {}, priors or {}, [], []
-    for key, given in (("bounds", bounds), ("priors", priors)):
+    for key, stated in (("bounds", bounds), ("priors", priors)):
         problems += [
             Problem(
                 f"calibrate.{key}.{label}", f"a free parameter ({', '.join(labels)})", "another", _hint(label, labels, model)
             )
-            for label in given
+            for label in stated
             if label not in labels
         ]
     for label in labels:
@@ -188,8 +202,8 @@ def parameter_space(
     return ParameterSpace(tuple(free))
 
 
-def _hint(label: str, known: Sequence[str], model: Model) -> str:
-    return model.shared_hint(label) or suggest(label, known)
+def _hint(label: str, labels: Sequence[str], model: Model) -> str:
+    return model.shared_hint(label) or suggest(label, labels)
 
 
 def slopes(space: ParameterSpace, x: np.ndarray) -> np.ndarray:

@@ -21,7 +21,7 @@ class AbstractTransform(eqx.Module):
 
     @abc.abstractmethod
     def inverse(self, value: float) -> float:
-        """The coordinate of a value; of one outside the range, that of the nearest inside."""
+        """The coordinate of a value, or of the nearest value inside the range."""
 
     @abc.abstractmethod
     def at_bound(self, x: float) -> bool:
@@ -29,9 +29,10 @@ class AbstractTransform(eqx.Module):
 
 
 class LogInterval(AbstractTransform):
-    """A positive value between bounds, on a logarithmic scale: dx is d ln(value) in the middle of the range.
+    """A positive value between bounds, on a logarithmic scale.
 
-    value = lower (upper/lower)^s(x), s the logistic function, scaled so.
+    value = lower (upper/lower)^s(x), with s the logistic function. It is scaled so that dx is d ln(value) in the middle of the
+    range.
     """
 
     lower: float
@@ -55,7 +56,10 @@ class LogInterval(AbstractTransform):
 
 
 class Interval(AbstractTransform):
-    """A value between bounds, of either sign: value = lower + (upper - lower) s(x), s the logistic function."""
+    """A value between bounds, of either sign.
+
+    value = lower + (upper - lower) s(x), with s the logistic function.
+    """
 
     lower: float
     upper: float

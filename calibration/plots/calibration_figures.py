@@ -28,8 +28,8 @@ def figures(calibration: Calibration) -> Iterator[tuple[str, str, Figure]]:
     yield "parameters.png", _PARAMETERS, parameters_figure(list(calibration.parameters.values()))
     decays = [test for test in calibration.tests if test.kind == "decay"]
     for dof in DOFS:
-        mine = [test for test in decays if test.degree_of_freedom == dof]
-        figure = decay_figure(dof, mine) if mine else None
+        released = [test for test in decays if test.degree_of_freedom == dof]
+        figure = decay_figure(dof, released) if released else None
         if figure is not None:
             yield f"decay-{dof}.png", _DECAY.format(dof=dof), figure
     for test in calibration.tests:
@@ -101,7 +101,7 @@ def write_band_error(ax: Axes, low: float, high: float, error: float) -> None:
 
 
 def test_figure(test: TestFit) -> Figure:
-    """Measured against simulated of the main channel, the residual below it, the other channels in small panels."""
+    """Main channel measured and simulated, its residual below, the other channels in small panels."""
     main = test.main
     others = [series for series in test.series if series is not main]
     figure, axes = stack([1.55, 0.7, *[0.68] * len(others)])
@@ -129,7 +129,18 @@ def _axis(channel: str, between: str = " ") -> str:
 def compare_motions(
     ax: Axes, time: np.ndarray, series: Series, before: np.ndarray | None, width: float = 1.0
 ) -> dict[str, Artist]:
-    """Draw a motion (m, deg) over time (s): measured, calibrated and, if there is one, before; gives the lines by name."""
+    """Draw a motion (m, deg) over time (s): measured, calibrated and before calibration.
+
+    Args:
+        ax: Axes.
+        time: Times (s), (t,).
+        series: Measured and calibrated motion (m, rad).
+        before: Motion before calibration (m, rad), (t,); None where there is none.
+        width: Factor of the line widths.
+
+    Returns:
+        The lines by name.
+    """
     name = series.channel
     rows = [("measured", series.measured, MEASURED, 1.5, 3.0), ("calibrated", series.simulated, SIMULATED, 0.8, 4.0)]
     if before is not None:
@@ -141,7 +152,10 @@ def compare_motions(
 
 
 def parameters_figure(parameters: list[Estimate]) -> Figure:
-    """Start and calibrated value of every parameter, one axis per unit; hollow where the records do not tell."""
+    """Start and calibrated value of every parameter, one axis for each unit.
+
+    Markers are hollow where the records do not determine the parameter.
+    """
     groups = {unit: [p for p in parameters if p.unit == unit] for unit in dict.fromkeys(p.unit for p in parameters)}
     heights = [0.2 * len(group) + 0.12 for group in groups.values()]
     figure = Figure(figsize=(WIDTH, sum(heights) + 0.45 * len(groups) + 0.55), layout="constrained")
@@ -149,10 +163,10 @@ def parameters_figure(parameters: list[Estimate]) -> Figure:
     artists: dict[str, Artist] = {}
     for ax, (unit, group) in zip(axes, groups.items()):
         power = _scale(ax, unit, group)
-        for row, one in enumerate(group):
-            artists |= _parameter(ax, row, one, power)
+        for row, estimate in enumerate(group):
+            artists |= _parameter(ax, row, estimate, power)
         ax.set_ylim(len(group) - 0.4, -0.6)
-        ax.set_yticks(range(len(group)), [one.label for one in group])
+        ax.set_yticks(range(len(group)), [estimate.label for estimate in group])
         ax.tick_params(axis="y", length=0)
         ax.grid(visible=False, axis="y")
     header(figure, "Parameters", artists, 2)
@@ -160,11 +174,11 @@ def parameters_figure(parameters: list[Estimate]) -> Figure:
 
 
 def _scale(ax: Axes, unit: str, group: list[Estimate]) -> float:
-    """Choose a linear or a logarithmic axis; gives what values are divided by."""
+    """Choose a linear or a logarithmic axis, and return the divisor of the values."""
     shown = readable_unit(unit)
-    sizes = np.array([v for one in group for v in (one.start, one.value)])
+    sizes = np.array([v for estimate in group for v in (estimate.start, estimate.value)])
     largest = float(np.abs(sizes).max(initial=0.0))
-    sure = all(one.value > 2 * (one.standard_deviation or 0.0) for one in group)
+    sure = all(estimate.value > 2 * (estimate.standard_deviation or 0.0) for estimate in group)
     if sure and (sizes > 0).all() and largest / sizes.min() > 60:
         ax.set_xscale("log")
         ax.xaxis.set_minor_formatter(NullFormatter())
@@ -179,14 +193,14 @@ def _scale(ax: Axes, unit: str, group: list[Estimate]) -> float:
     return 10.0**exponent
 
 
-def _parameter(ax: Axes, row: int, one: Estimate, power: float) -> dict[str, Artist]:
-    start, value, sd = one.start / power, one.value / power, one.standard_deviation
-    colour = SIMULATED if one.identifiable else GREY
-    label = "at its bound" if one.at_bound else "calibrated, ± 2 sd" if one.identifiable else "not determined"
+def _parameter(ax: Axes, row: int, estimate: Estimate, power: float) -> dict[str, Artist]:
+    start, value, sd = estimate.start / power, estimate.value / power, estimate.standard_deviation
+    colour = SIMULATED if estimate.identifiable else GREY
+    label = "at its bound" if estimate.at_bound else "calibrated, ± 2 sd" if estimate.identifiable else "not determined"
     ax.plot([start, value], [row, row], color=BEFORE, lw=1.0, zorder=2)
     bar = ax.plot(start, row, "|", ms=8, color=BEFORE, mew=1.4, zorder=3)[0]
-    if one.identifiable and sd is not None and np.isfinite(sd):
+    if estimate.identifiable and sd is not None and np.isfinite(sd):
         ax.errorbar(value, row, xerr=2 * sd / power, color=colour, elinewidth=1.0, capsize=2, zorder=3)
-    face = colour if one.identifiable else "white"
-    dot = ax.plot(value, row, "D" if one.at_bound else "o", ms=4, mfc=face, mec=colour, mew=0.8, ls="", zorder=4)[0]
+    face = colour if estimate.identifiable else "white"
+    dot = ax.plot(value, row, "D" if estimate.at_bound else "o", ms=4, mfc=face, mec=colour, mew=0.8, ls="", zorder=4)[0]
     return {"start": bar, label: dot}

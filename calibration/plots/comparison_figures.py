@@ -1,4 +1,4 @@
-"""Figures of tests in waves: spectra with their bands, motion per metre of wave, and an excerpt of the record."""
+"""Figures of tests in waves: spectra with bands, motion per metre of wave, excerpt of the record."""
 
 from collections.abc import Iterator, Sequence
 
@@ -48,7 +48,7 @@ def _title(test: SeaTest) -> str:
 
 
 def spectra_figure(test: SeaTest, names: Sequence[str] | None = None, title: str | None = None) -> Figure:
-    """Densities of the wave and of what moves."""
+    """Spectral densities of the wave and of the moving channels."""
     both, highest = channels(test), max(MAX_FREQUENCY, 2.5 / test.peak_period)
     shown = ["wave", *moving(test)] if names is None else list(names)
     figure, axes = stack([0.95] * len(shown))
@@ -72,7 +72,7 @@ def spectra_figure(test: SeaTest, names: Sequence[str] | None = None, title: str
 
 
 def response_figure(test: SeaTest) -> Figure | None:
-    """Response amplitude operators of what moves, with their coherence, where the waves have energy.
+    """Response amplitude operators of the moving channels, and coherence, where the waves have energy.
 
     None for regular waves and for a record that is too short.
     """
@@ -90,9 +90,11 @@ def response_figure(test: SeaTest) -> Figure | None:
     figure, axes = stack([0.8, 0.4] * len(shown))
     artists: dict[str, Artist] = {}
     for i, name in enumerate(shown):
-        for label, one, colour, width in zip(("measured", "simulated"), transfers[name], (MEASURED, SIMULATED), (1.4, 0.8)):
-            artists[label] = axes[2 * i].plot(one.frequency, one.amplitude + gap, color=colour, lw=width)[0]
-            axes[2 * i + 1].plot(one.frequency, one.coherence + gap, color=colour, lw=width)
+        for label, transfer, colour, width in zip(
+            ("measured", "simulated"), transfers[name], (MEASURED, SIMULATED), (1.4, 0.8)
+        ):
+            artists[label] = axes[2 * i].plot(transfer.frequency, transfer.amplitude + gap, color=colour, lw=width)[0]
+            axes[2 * i + 1].plot(transfer.frequency, transfer.coherence + gap, color=colour, lw=width)
         axes[2 * i].set_ylim(bottom=0)
         axes[2 * i].set_ylabel(f"{name.capitalize()}\n({unit_of(name)}/m)")
         axes[2 * i + 1].set_ylim(0, 1.05)
@@ -105,13 +107,13 @@ def response_figure(test: SeaTest) -> Figure | None:
 def excerpt_figure(test: SeaTest) -> Figure:
     """Part of the record, about the wave's highest crest."""
     both, time = channels(test), test.fit.time
-    seen = about_highest_crest(time, test.wave, EXCERPT_LENGTH, float(time[0]))
+    excerpt = about_highest_crest(time, test.wave, EXCERPT_LENGTH, float(time[0]))
     shown = ["wave", *moving(test)]
     figure, axes = stack([0.8] * len(shown))
     artists: dict[str, Artist] = {}
     for ax, name in zip(axes, shown):
         for label, x, colour, line in zip(("measured", "simulated"), both[name], (MEASURED, SIMULATED), (1.4, 0.8)):
-            artists[label] = ax.plot(time[seen], x[seen], color=colour, lw=line)[0]
+            artists[label] = ax.plot(time[excerpt], x[excerpt], color=colour, lw=line)[0]
         ax.set_ylabel(f"{name.capitalize()} ({unit_of(name)})")
     axes[-1].set_xlabel("Time (s)")
     header(figure, _title(test), artists)

@@ -35,7 +35,7 @@ class DecayCycles(NamedTuple):
 
     @classmethod
     def of(cls, test: TestFit) -> "DecayCycles":
-        """From a test's main channel."""
+        """Half cycles of a test's main channel."""
         main = test.main
 
         def cycles(values: np.ndarray | None) -> Cycles:
@@ -54,13 +54,16 @@ class DecayCycles(NamedTuple):
         )
 
     def well_seen(self, cycles: Cycles, quantity: str) -> np.ndarray:
-        """A quantity of the cycles that are clear of the noise; of the largest ones where none is."""
+        """Quantity of the cycles that are clear of the noise, or of the largest ones where none is."""
         values, size = getattr(cycles, quantity), cycles.amplitude
         return values[(size >= min(self.clear, 0.3 * size.max(initial=0.0))) & np.isfinite(values)]
 
 
 def _fitted_line(time: np.ndarray, series: Series) -> np.ndarray | None:
-    """Decrement per cycle of linear and quadratic damping, T p / 2 + 8/3 q a, at the smallest and largest amplitude a."""
+    """Line of linear and quadratic damping: two amplitudes, and the decrements per cycle there, (2, 2).
+
+    The decrement is T p / 2 + 8/3 q a. The amplitudes a are the smallest and the largest. None with too few cycles.
+    """
     try:
         analysis = classical(time, series.measured, series.noise)
     except ValueError:  # too few cycles
@@ -71,10 +74,10 @@ def _fitted_line(time: np.ndarray, series: Series) -> np.ndarray | None:
 
 
 def decay_figure(dof: str, tests: list[TestFit]) -> Figure | None:
-    """Decrement and period against amplitude of all decays of one motion; None where none has a whole cycle.
+    """Decrement and period against amplitude of all decays of one motion.
 
-    Cycles of small amplitude scatter by the noise. The axes are for those of `CLEAR_AMPLITUDE` times the noise and more.
-    Cycles beyond the axes are triangles at the edge.
+    It is None where no decay has a whole cycle. Cycles of small amplitude scatter by the noise. The axes fit cycles of
+    `CLEAR_AMPLITUDE` times the noise and more. Cycles beyond the axes are triangles at the edge.
     """
     decays = [DecayCycles.of(test) for test in tests]
     amplitudes = np.concatenate([decay.measured.amplitude for decay in decays])
@@ -103,25 +106,28 @@ def decay_figure(dof: str, tests: list[TestFit]) -> Figure | None:
 
 
 def _dots(ax: Axes, artists: dict[str, Artist], decay: DecayCycles, quantity: str, limits: tuple[float, float]) -> None:
-    """Measured cycles; those beyond the limits as triangles at the edge."""
+    """Draw the measured cycles, and triangles at the edge for those beyond the limits."""
     low, high = limits
     x, y = decay.measured.amplitude, getattr(decay.measured, quantity)
     face = "white" if decay.held else MEASURED
-    look: dict[str, Any] = {"ms": 3, "mfc": face, "mec": MEASURED, "mew": 0.7, "ls": "", "zorder": 4, "clip_on": False}
+    properties: dict[str, Any] = {"ms": 3, "mfc": face, "mec": MEASURED, "mew": 0.7, "ls": "", "zorder": 4, "clip_on": False}
     for rows, marker in (((y >= low) & (y <= high), "o"), (y > high, "^"), (y < low, "v")):
         if rows.any():
-            line = ax.plot(x[rows], np.clip(y[rows], low, high), marker=marker, **look)[0]
+            line = ax.plot(x[rows], np.clip(y[rows], low, high), marker=marker, **properties)[0]
             line.set_in_layout(False)
             if marker == "o":
                 artists["held out" if decay.held else "measured"] = line
 
 
 def _limits(decays: list[DecayCycles], quantity: str) -> tuple[float, float]:
-    """Limits that hold the clear cycles: all calibrated ones, nine tenths of the measured ones, those before
-    calibration where they are not far off. Those of a period are at least 2 % apart."""
+    """Limits of an axis that hold the clear cycles.
+
+    They hold all calibrated cycles and nine tenths of the measured ones. They hold cycles before calibration that are not far
+    off. The limits of a period are at least 2 % apart.
+    """
     measured, simulated, before = (
-        np.concatenate([decay.well_seen(getattr(decay, which), quantity) for decay in decays])
-        for which in ("measured", "simulated", "before")
+        np.concatenate([decay.well_seen(getattr(decay, source), quantity) for decay in decays])
+        for source in ("measured", "simulated", "before")
     )
     core = np.concatenate([np.quantile(measured, [0.05, 0.95]) if len(measured) else measured, simulated])
     low, high = (float(core.min()), float(core.max())) if len(core) else (0.0, 1.0)

@@ -28,8 +28,12 @@ SHORT_EXCERPT = 600.0  # of the other motions
 
 
 def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, str, Figure]]:
-    """File name, caption and figure, one after the other; `compared` is the augmented calibration with the baseline's
-    motions as those before. Call within `plots.style.style()`."""
+    """File name, caption and figure, one after the other. Call within `plots.style.style()`.
+
+    Args:
+        diagnosis: The diagnosis.
+        compared: The augmented calibration, with the baseline's motions as those before.
+    """
     rows = compared_series(compared)
     if rows:
         yield "before-after.png", _BEFORE_AFTER, before_after_figure(rows)
@@ -43,10 +47,10 @@ def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, 
             name = "-".join(filter(None, ("effect", effect.effect, effect.degree_of_freedom)))
             title = effect_in_words(effect.effect, effect.degree_of_freedom)
             yield f"{safe_name(name)}.png", _EFFECT.format(title=title, id=row.test.id), effect_figure(row, title)
-    if any(max(one.gain, one.refitted or 0.0) > MIN_SHOWN_GAIN for one in diagnosis.scores):
+    if any(max(score.gain, score.refitted or 0.0) > MIN_SHOWN_GAIN for score in diagnosis.scores):
         yield "scores.png", _SCORES, scores_figure(diagnosis)
     if diagnosis.latent:
-        largest = max(diagnosis.latent, key=lambda one: one.relative)
+        largest = max(diagnosis.latent, key=lambda force: force.relative)
         yield "latent-force.png", _LATENT.format(motion=largest.motion, id=largest.shown.test), latent_figure(largest)
     for test in compared.tests:
         if test.kind == "irregular" and series_with_spectra(test):
@@ -91,7 +95,7 @@ class MotionRow(NamedTuple):
 
 
 def compared_series(compared: Calibration) -> list[MotionRow]:
-    """The motions that count in J, or of a test without any the main one; fitted tests first."""
+    """Motions that count in J, or the main motion of a test without any; fitted tests first."""
     rows = []
     for use in USE:
         for test in compared.tests:
@@ -102,37 +106,37 @@ def compared_series(compared: Calibration) -> list[MotionRow]:
 
 def before_after_figure(rows: list[MotionRow]) -> Figure:
     """Two bars for every motion of every test, held-out tests apart."""
-    places, labels, heads, at = [], [], [], 0.0
+    positions, labels, heads, height = [], [], [], 0.0
     for i, row in enumerate(rows):
         if i == 0 or row.test.use != rows[i - 1].test.use:
-            heads.append((at, USE[row.test.use]))
-            at += 0.85
-        places.append(at)
+            heads.append((height, USE[row.test.use]))
+            height += 0.85
+        positions.append(height)
         channel = "" if row.series.channel in row.test.id else f", {row.series.channel}"
         labels.append(f"{_shortened(row.test.id)}{channel}")
-        at += 1.0
-    figure = Figure(figsize=(WIDTH, 0.26 * at + 0.85), layout="constrained")
+        height += 1.0
+    figure = Figure(figsize=(WIDTH, 0.26 * height + 0.85), layout="constrained")
     FigureCanvasAgg(figure)
     ax = figure.subplots()
     errors = np.array([row.errors for row in rows])
     for column, colour, shift in ((0, BEFORE, -0.2), (1, SIMULATED, 0.2)):
-        ax.barh(np.array(places) + shift, 100 * errors[:, column], height=0.37, color=colour)
-        for place, error in zip(places, errors[:, column]):
+        ax.barh(np.array(positions) + shift, 100 * errors[:, column], height=0.37, color=colour)
+        for position, error in zip(positions, errors[:, column]):
             ax.annotate(
                 percent(error),
-                (100 * error, place + shift),
+                (100 * error, position + shift),
                 (2, 0),
                 textcoords="offset points",
                 va="center",
                 fontsize=6.5,
                 color="#555a62",
             )
-    for place, text in heads:
-        ax.text(0.0, place, f" {text}", fontweight="bold", va="center")
-    ax.set_yticks(places, labels)
+    for position, text in heads:
+        ax.text(0.0, position, f" {text}", fontweight="bold", va="center")
+    ax.set_yticks(positions, labels)
     ax.tick_params(axis="y", length=0)
     ax.grid(visible=False, axis="y")
-    ax.set_ylim(at - 0.4, -0.6)
+    ax.set_ylim(height - 0.4, -0.6)
     ax.set_xlim(0.0, 113 * max(float(errors.max()), 1e-6))
     ax.set_xlabel("RMSE / standard deviation of the motion (%)")
     header(figure, "Error before and after", {"before": Patch(color=BEFORE), "after": Patch(color=SIMULATED)})
@@ -144,19 +148,22 @@ def _shortened(text: str, most: int = 18) -> str:
 
 
 def clearest_row(rows: list[MotionRow], effect: Effect) -> MotionRow | None:
-    """Where the effect shows best: the largest fall of the error, in its own motion if that falls anywhere."""
+    """Motion of a test in which an effect shows best: that with the largest fall of the error.
+
+    The effect's own motion is preferred, if its error falls in any test. None where no error falls.
+    """
 
     def fall(row: MotionRow) -> float:
         before, after = row.errors
         return before - after
 
     falling = [row for row in rows if fall(row) > 0]
-    mine = [row for row in falling if row.series.channel == effect.degree_of_freedom]
-    return max(mine or falling, key=fall, default=None)
+    same_motion = [row for row in falling if row.series.channel == effect.degree_of_freedom]
+    return max(same_motion or falling, key=fall, default=None)
 
 
 def excerpt(row: MotionRow) -> slice:
-    """The samples that are shown: all of a decay; of a test in waves where most is gained."""
+    """Samples that are shown: all of a decay, or the part of a test in waves with the largest gain."""
     time, (before, after) = row.test.time, row.residuals
     count = int(np.searchsorted(time - time[0], EXCERPT_LENGTHS.get(row.series.channel, SHORT_EXCERPT)))
     if row.test.kind == "decay" or count >= len(time):
@@ -167,15 +174,15 @@ def excerpt(row: MotionRow) -> slice:
 
 
 def effect_figure(row: MotionRow, title: str) -> Figure:
-    """The measured motion, and below it what is left before and after on one scale."""
-    name, seen = row.series.channel, excerpt(row)
-    time = row.test.time[seen] - row.test.time[0]
+    """Measured motion, and below it the residuals before and after on one scale."""
+    name, samples = row.series.channel, excerpt(row)
+    time = row.test.time[samples] - row.test.time[0]
     figure, axes = stack([0.95, 0.8, 0.8])
-    measured = for_people(name, row.series.measured[seen])
+    measured = for_people(name, row.series.measured[samples])
     artists: dict[str, Artist] = {"measured": axes[0].plot(time, measured, color=MEASURED)[0]}
     axes[0].set_ylabel(f"{name.capitalize()}\n({unit_of(name)})")
     noise = 2 * float(for_people(name, row.series.noise))
-    both = [for_people(name, residual[seen]) for residual in row.residuals]
+    both = [for_people(name, residual[samples]) for residual in row.residuals]
     limit = 1.08 * max(float(np.abs(residual).max()) for residual in both)
     for ax, residual, label, colour in zip(axes[1:], both, ("before", "after"), (BEFORE, SIMULATED)):
         artists["noise"] = ax.axhspan(-noise, noise, color="#d3d8df", lw=0, zorder=0.5)
@@ -196,7 +203,7 @@ def series_with_spectra(test: TestFit) -> list[Series]:
 
 
 def spectra_figure(test: TestFit) -> Figure:
-    """Densities measured, before and after; the bands of slow motion and of waves shaded."""
+    """Spectral densities measured, before and after; the bands of slow motion and of waves shaded."""
     shown = series_with_spectra(test)
     figure, axes = stack([1.1] * len(shown))
     artists: dict[str, Artist] = {}

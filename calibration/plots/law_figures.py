@@ -13,25 +13,25 @@ from jaxhydro.waves.sea_state import SeaState
 COLOURS = (BEFORE, SIMULATED, WAVE, GREY)
 
 
-def coefficient_figure(found: SeaLaws, label: str) -> Figure:
-    """A coefficient against significant height: of every sea alone, by the constants, and by the chosen law.
+def coefficient_figure(sea_laws: SeaLaws, label: str) -> Figure:
+    """A coefficient against significant height: of each sea alone, by the constants, by the chosen law.
 
-    Bars and the band are one standard deviation. Along the height the period goes as in the tests (a line through the
-    logarithms of both). Call within `plots.style.style()`.
+    Bars and the band are one standard deviation. The period changes with the height as in the tests, by a line through the
+    logarithms of both. Call within `plots.style.style()`.
     """
     figure, (ax,) = stack([1.9])
-    seas = sorted(found.seas, key=lambda sea: sea.state.significant_height)
+    seas = sorted(sea_laws.seas, key=lambda sea: sea.state.significant_height)
     heights = np.array([sea.state.significant_height for sea in seas])
     artists: dict[str, Artist] = {}
     for sea in seas:
-        one = sea.calibration.parameters[label]
-        relative = one.standard_deviation / one.value if one.standard_deviation is not None else np.nan
-        bars = np.array([[one.value * (1 - np.exp(-relative))], [one.value * (np.exp(relative) - 1)]])
+        estimate = sea.calibration.parameters[label]
+        relative = estimate.standard_deviation / estimate.value if estimate.standard_deviation is not None else np.nan
+        bars = np.array([[estimate.value * (1 - np.exp(-relative))], [estimate.value * (np.exp(relative) - 1)]])
         name = "one sea alone" if sea.use == "fit" else "one sea alone, held out"
         face = MEASURED if sea.use == "fit" else "white"
         artists[name] = ax.errorbar(
             sea.state.significant_height,
-            one.value,
+            estimate.value,
             yerr=None if np.isnan(relative) else bars,
             fmt="o",
             color=MEASURED,
@@ -42,11 +42,11 @@ def coefficient_figure(found: SeaLaws, label: str) -> Figure:
             zorder=4,
         )[0]
     grid = np.geomspace(0.85 * heights.min(), 1.15 * heights.max(), 60)
-    shown = [found.laws[0]] + ([found.chosen] if found.chosen is not found.laws[0] else [])
+    shown = [sea_laws.laws[0]] + ([sea_laws.chosen] if sea_laws.chosen is not sea_laws.laws[0] else [])
     for law, colour in zip(shown, COLOURS):
-        value, deviation = np.array([law.coefficient(label, state) for state in _states(found, grid)]).T
+        value, deviation = np.array([law.coefficient(label, state) for state in _states(sea_laws, grid)]).T
         ax.fill_between(grid, value * np.exp(-deviation), value * np.exp(deviation), color=colour, alpha=0.22, lw=0)
-        artists[_name(law, found)] = ax.plot(grid, value, color=colour, lw=1.4)[0]
+        artists[_name(law, sea_laws)] = ax.plot(grid, value, color=colour, lw=1.4)[0]
     ax.set_yscale("log")
     ax.set_xlabel("Significant height (m)")
     unit = readable_unit(seas[0].calibration.parameters[label].unit)
@@ -55,11 +55,11 @@ def coefficient_figure(found: SeaLaws, label: str) -> Figure:
     return figure
 
 
-def _name(law: LawFit, found: SeaLaws) -> str:
-    return f"{LAW_NAMES[law.name]}{', chosen' if law is found.chosen else ''}"
+def _name(law: LawFit, sea_laws: SeaLaws) -> str:
+    return f"{LAW_NAMES[law.name]}{', chosen' if law is sea_laws.chosen else ''}"
 
 
-def _states(found: SeaLaws, heights: np.ndarray) -> list[SeaState]:
-    height, period = np.log([sea.state for sea in found.seas]).T
-    slope, at = np.polyfit(height, period, 1) if np.ptp(height) > 0 else (0.0, period.mean())
-    return [SeaState(float(h), float(np.exp(at + slope * np.log(h)))) for h in heights]
+def _states(sea_laws: SeaLaws, heights: np.ndarray) -> list[SeaState]:
+    height, period = np.log([sea.state for sea in sea_laws.seas]).T
+    slope, intercept = np.polyfit(height, period, 1) if np.ptp(height) > 0 else (0.0, period.mean())
+    return [SeaState(float(h), float(np.exp(intercept + slope * np.log(h)))) for h in heights]

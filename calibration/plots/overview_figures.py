@@ -46,7 +46,9 @@ def comparison_figure(tests: Sequence[TestFit], title: str, labels: tuple[str, s
 
 
 def records_figure(records: Sequence[Record], title: str) -> Figure:
-    """Records (m, deg) over time (s): the released motion of a decay, else the wave and what moves. Call within `style`.
+    """Records (m, deg) over time (s), a panel for each channel. Call within `style`.
+
+    Of a decay the released motion is shown, of other tests the wave and the moving channels.
 
     Args:
         records: The records.
@@ -65,7 +67,7 @@ def records_figure(records: Sequence[Record], title: str) -> Figure:
 
 
 def _channels(record: Record) -> dict[str, np.ndarray]:
-    """What is shown of a record (m, deg), by channel."""
+    """Channels of a record that are shown (m, deg)."""
     released = record.degree_of_freedom
     motions = record.values if released not in record.values else {released: record.values[released]}
     channels = {name: for_people(name, values) for name, values in motions.items()}

@@ -24,15 +24,15 @@ EXCERPT_LENGTH = 600.0  # s of a latent force in waves
 
 
 def chosen_effects(diagnosis: Diagnosis) -> dict[int, Score]:
-    """What each round took into the model: of the effects found, the round that was the last to score it."""
-    found = {(effect.effect, effect.degree_of_freedom) for effect in diagnosis.effects}
-    last = {(score.effect, score.degree_of_freedom): score for score in sorted(diagnosis.scores, key=lambda one: one.round)}
-    taken = [score for key, score in last.items() if key in found and score.refitted is not None]
+    """Effect that each round took into the model; an effect belongs to the last round that scored it."""
+    effects = {(effect.effect, effect.degree_of_freedom) for effect in diagnosis.effects}
+    last = {(score.effect, score.degree_of_freedom): score for score in sorted(diagnosis.scores, key=lambda score: score.round)}
+    taken = [score for key, score in last.items() if key in effects and score.refitted is not None]
     return {score.round: score for score in taken}
 
 
 def scores_figure(diagnosis: Diagnosis) -> Figure:
-    """A panel for every round: candidates by what they gain at first order, those refitted with a dot."""
+    """Gain of the candidates at first order, a panel for each round, with a dot for refitted ones."""
     took = chosen_effects(diagnosis)
     rounds = {n: _best(diagnosis, n, took.get(n)) for n in sorted({score.round for score in diagnosis.scores})}
     heights = [0.165 * len(rows) + 0.1 for rows in rounds.values()]
@@ -45,9 +45,13 @@ def scores_figure(diagnosis: Diagnosis) -> Figure:
     artists: dict[str, Artist] = {}
     for ax, (n, rows) in zip(axes, rounds.items()):
         for i, score in enumerate(rows):
-            mine = score is took.get(n)
+            chosen = score is took.get(n)
             ax.barh(
-                i, _gain(score.gain) - MIN_SHOWN_GAIN, left=MIN_SHOWN_GAIN, height=0.68, color=SIMULATED if mine else "#c3c9d1"
+                i,
+                _gain(score.gain) - MIN_SHOWN_GAIN,
+                left=MIN_SHOWN_GAIN,
+                height=0.68,
+                color=SIMULATED if chosen else "#c3c9d1",
             )
             if score.refitted is not None:
                 dot = Line2D([_gain(score.refitted)], [i], marker="o", ms=3.5, color=MEASURED, ls="", clip_on=False)
@@ -61,19 +65,19 @@ def scores_figure(diagnosis: Diagnosis) -> Figure:
     return figure
 
 
-def _best(diagnosis: Diagnosis, n: int, kept: Score | None) -> list[Score]:
-    """A round's candidates, the largest gain first; the one kept and those refitted among them."""
-    rows = sorted((score for score in diagnosis.scores if score.round == n), key=lambda one: -_gain(one.gain))
+def _best(diagnosis: Diagnosis, n: int, chosen: Score | None) -> list[Score]:
+    """Candidates of a round, the largest gain first; the chosen and the refitted ones are among them."""
+    rows = sorted((score for score in diagnosis.scores if score.round == n), key=lambda score: -_gain(score.gain))
     several = len({score.round for score in diagnosis.scores}) > 2
-    told = [one for one in rows if one.refitted is not None or _gain(one.gain) > MIN_SHOWN_GAIN] or rows[:1]
-    wanted = sorted(told, key=lambda one: (one is not kept, one.refitted is None))[
+    shown = [score for score in rows if score.refitted is not None or _gain(score.gain) > MIN_SHOWN_GAIN] or rows[:1]
+    wanted = sorted(shown, key=lambda score: (score is not chosen, score.refitted is None))[
         : MAX_CANDIDATES_PER_ROUND if several else MAX_CANDIDATES
     ]
-    return [score for score in rows if any(score is one for one in wanted)]
+    return [score for score in rows if any(score is choice for choice in wanted)]
 
 
 def _gain(value: float | None) -> float:
-    """What a log axis can show."""
+    """Gain as a logarithmic axis can show it: at least `MIN_SHOWN_GAIN`."""
     return max(MIN_SHOWN_GAIN, value) if value is not None and np.isfinite(value) else MIN_SHOWN_GAIN
 
 
@@ -94,10 +98,10 @@ def _scores_axes(ax: Axes, labels: list[str], highest: float) -> None:
 
 def anatomy_figure(before: tuple[Finding, ...], after: tuple[Finding, ...]) -> Figure:
     """Residual over noise in frequency bands, a row for every motion of every test, before beside after."""
-    rows = sorted(before, key=lambda one: (one.use != "fit", before.index(one)))
-    there = {(one.test, one.channel): one for one in after}
-    pairs = [(one, there.get((one.test, one.channel))) for one in rows]
-    every = [band for pair in pairs for one in pair if one is not None for band in one.bands]
+    rows = sorted(before, key=lambda finding: (finding.use != "fit", before.index(finding)))
+    after_by_motion = {(finding.test, finding.channel): finding for finding in after}
+    pairs = [(finding, after_by_motion.get((finding.test, finding.channel))) for finding in rows]
+    every = [band for pair in pairs for finding in pair if finding is not None for band in finding.bands]
     ratios = [ratio for *_, ratio in every if np.isfinite(ratio)]
     norm = LogNorm(1.0, max(10.0, max(ratios, default=10.0)))
     low = 0.6 * min((high for _, high, _ in every if high > 0), default=1e-3)
@@ -105,7 +109,7 @@ def anatomy_figure(before: tuple[Finding, ...], after: tuple[Finding, ...]) -> F
     figure = Figure(figsize=(WIDTH, 0.165 * len(rows) + 1.35), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(1, 2, sharey=True)
-    held = sum(one.use == "fit" for one in rows)
+    held = sum(finding.use == "fit" for finding in rows)
     for ax, column, title in zip(axes, (0, 1), ("Before", "After")):
         for i, pair in enumerate(pairs):
             _strip(ax, i, pair[column], low, norm)
@@ -119,7 +123,7 @@ def anatomy_figure(before: tuple[Finding, ...], after: tuple[Finding, ...]) -> F
         ax.minorticks_off()
         if 0 < held < len(rows):
             ax.axhline(held - 0.5, color=MEASURED, lw=0.8)
-    axes[0].set_yticks(range(len(rows)), [_row_name(one) for one in rows], fontsize=7)
+    axes[0].set_yticks(range(len(rows)), [_row_name(finding) for finding in rows], fontsize=7)
     axes[0].set_ylim(len(rows) - 0.5, -0.5)
     bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", aspect=40, pad=0.02)
     bar.set_label("Residual / noise (rms in the band)")
@@ -129,40 +133,43 @@ def anatomy_figure(before: tuple[Finding, ...], after: tuple[Finding, ...]) -> F
     return figure
 
 
-def _strip(ax: Axes, row: int, one: Finding | None, low: float, norm: LogNorm) -> None:
-    """One motion's bands, from where the axis begins."""
-    if one is None or not one.bands:
+def _strip(ax: Axes, row: int, finding: Finding | None, low: float, norm: LogNorm) -> None:
+    """Draw the bands of one motion, from the beginning of the axis on."""
+    if finding is None or not finding.bands:
         ax.axhspan(row - 0.5, row + 0.5, color="#eef0f2", lw=0)
         return
-    for begin, end, ratio in one.bands:
+    for begin, end, ratio in finding.bands:
         if end > low:
             colour = GREY if not np.isfinite(ratio) else ScalarMappable(norm, COLOURS).to_rgba(np.array([max(ratio, 1.0)]))[0]
             ax.fill_between([max(begin, low), end], row - 0.46, row + 0.46, color=colour, lw=0)
 
 
-def _row_name(one: Finding) -> str:
-    name = one.test if one.channel in one.test else f"{one.test}, {one.channel}"
+def _row_name(finding: Finding) -> str:
+    name = finding.test if finding.channel in finding.test else f"{finding.test}, {finding.channel}"
     return name if len(name) <= 20 else f"{name[:19]}…"
 
 
-def latent_figure(one: LatentForce) -> Figure:
-    """A latent force over time, with its law, and below it the velocity or the wave: of a test in waves where it is largest."""
-    shown, seen = one.shown, slice(None)
+def latent_figure(force: LatentForce) -> Figure:
+    """A latent force over time with its law, and below it the velocity or the wave.
+
+    Of a test in waves, the part with the largest force is shown.
+    """
+    shown, samples = force.shown, slice(None)
     step = float(shown.time[1] - shown.time[0])
     if shown.beside == "wave" and (count := round(EXCERPT_LENGTH / step)) < len(shown.time):
         power = np.concatenate([[0.0], np.cumsum(shown.force**2)])
-        seen = slice(begin := int(np.argmax(power[count:] - power[:-count])), begin + count)
-    time, highest = shown.time[seen], float(np.abs(shown.force[seen]).max())
+        samples = slice(begin := int(np.argmax(power[count:] - power[:-count])), begin + count)
+    time, highest = shown.time[samples], float(np.abs(shown.force[samples]).max())
     factor, prefix = next(((size, name) for size, name in PREFIXES if highest >= size), (1.0, ""))
     figure, axes = stack([1.1, 0.8])
-    artists: dict[str, Artist] = {"latent force": axes[0].plot(time, shown.force[seen] / factor, color=MEASURED)[0]}
+    artists: dict[str, Artist] = {"latent force": axes[0].plot(time, shown.force[samples] / factor, color=MEASURED)[0]}
     if len(shown.law):
-        artists["law"] = axes[0].plot(time, shown.law[seen] / factor, color=SIMULATED, lw=0.8)[0]
-    axes[0].set_ylabel(f"{'Moment' if one.unit == 'N m' else 'Force'}\n({prefix}{one.unit})")
+        artists["law"] = axes[0].plot(time, shown.law[samples] / factor, color=SIMULATED, lw=0.8)[0]
+    axes[0].set_ylabel(f"{'Moment' if force.unit == 'N m' else 'Force'}\n({prefix}{force.unit})")
     wave = shown.beside == "wave"
-    values = shown.values[seen] if wave else for_people(one.motion, shown.values[seen])
+    values = shown.values[samples] if wave else for_people(force.motion, shown.values[samples])
     axes[1].plot(time, values, color=WAVE if wave else GREY, lw=0.8)
-    axes[1].set_ylabel("Wave (m)" if wave else f"Velocity\n({unit_of(one.motion)}/s)")
+    axes[1].set_ylabel("Wave (m)" if wave else f"Velocity\n({unit_of(force.motion)}/s)")
     axes[1].set_xlabel("Time (s)")
-    header(figure, f"What the model lacks in {one.motion}: {shown.test[:18]}", artists)
+    header(figure, f"What the model lacks in {force.motion}: {shown.test[:18]}", artists)
     return figure

@@ -11,37 +11,37 @@ from calibration.uncertainty.profile import Profile
 from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WIDTH, header
 
 
-def profile_figure(found: Profile) -> Figure:
-    """Rise of -2 log likelihood along the parameter, its level and interval, and the parabola of the covariance."""
+def profile_figure(profile: Profile) -> Figure:
+    """Rise of -2 log likelihood along a parameter, its level and interval, and the covariance's parabola."""
     figure = Figure(figsize=(WIDTH, 2.2), layout="constrained")
     ax = figure.subplots()
-    limit, top = float(chi2.ppf(found.level, 1)), 1.6 * float(chi2.ppf(found.level, 1))
-    artists = {"profile": ax.plot(found.grid, found.drop, "o-", ms=3, color=SIMULATED, mew=0)[0]}
-    middle = found.coordinate[int(np.argmin(np.abs(found.grid - found.estimate)))]
-    half = 0.5 * np.ptp(np.interp(found.laplace, found.grid, found.coordinate))
+    limit, top = float(chi2.ppf(profile.level, 1)), 1.6 * float(chi2.ppf(profile.level, 1))
+    artists = {"profile": ax.plot(profile.grid, profile.drop, "o-", ms=3, color=SIMULATED, mew=0)[0]}
+    middle = profile.coordinate[int(np.argmin(np.abs(profile.grid - profile.estimate)))]
+    half = 0.5 * np.ptp(np.interp(profile.laplace, profile.grid, profile.coordinate))
     if half > 0:
-        parabola = limit * ((found.coordinate - middle) / half) ** 2
-        artists["covariance"] = ax.plot(found.grid, parabola, "--", lw=0.8, color=MEASURED)[0]
+        parabola = limit * ((profile.coordinate - middle) / half) ** 2
+        artists["covariance"] = ax.plot(profile.grid, parabola, "--", lw=0.8, color=MEASURED)[0]
     ax.axhline(limit, color=GREY, lw=0.6)
-    for end in found.interval:
+    for end in profile.interval:
         if end is not None:
             ax.plot([end, end], [0, limit], color=SIMULATED, lw=0.6)
     ax.set_ylim(0, top)
-    ax.set_xlabel(_named(found.label, found.unit))
+    ax.set_xlabel(_named(profile.label, profile.unit))
     ax.set_ylabel("Rise of\n$-2\\,\\ln L$ (-)")
-    header(figure, str(found).replace(": ", "\n", 1), artists)  # in one line it may be too wide
+    header(figure, str(profile).replace(": ", "\n", 1), artists)  # in one line it may be too wide
     return figure
 
 
-def draws_figure(found: Bootstrap | Samples, first: str, second: str) -> Figure:
-    """Draws of two parameters, over the ellipse of 95 % of the covariance, as far as it is near them."""
-    likely, width = found.likelihood, len(found.labels)
-    at = [likely.index(first), likely.index(second)]
-    points = found.value.reshape(-1, width)[:, at]
+def draws_figure(draws: Bootstrap | Samples, first: str, second: str) -> Figure:
+    """Draws of two parameters, over the 95 % ellipse of the covariance as far as it is near them."""
+    likely, width = draws.likelihood, len(draws.labels)
+    indices = [likely.index(first), likely.index(second)]
+    points = draws.value.reshape(-1, width)[:, indices]
     angle = np.linspace(0, 2 * np.pi, 100)
-    covariance = likely.covariance[np.ix_(at, at)]
+    covariance = likely.covariance[np.ix_(indices, indices)]
     ring = np.linalg.cholesky(covariance) @ np.stack([np.cos(angle), np.sin(angle)]) * np.sqrt(chi2.ppf(0.95, 2))
-    edge = [[likely.value(label, likely.estimate[i] + x) for x in row] for label, i, row in zip((first, second), at, ring)]
+    edge = [[likely.value(label, likely.estimate[i] + x) for x in row] for label, i, row in zip((first, second), indices, ring)]
     figure = Figure(figsize=(WIDTH, 2.6), layout="constrained")
     ax = figure.subplots()
     artists = {"draws": ax.plot(*points.T, "o", ms=2, color=SIMULATED, mew=0, alpha=0.6)[0]}
@@ -55,7 +55,7 @@ def draws_figure(found: Bootstrap | Samples, first: str, second: str) -> Figure:
         ends = max(low - margin, min(low, *ring_of)), min(high + margin, max(high, *ring_of))
         limit(ends[0] - 0.1 * margin, ends[1] + 0.1 * margin)
     ways = {"repeats": "repeated tests drawn anew", "blocks": "residuals drawn in blocks"}
-    title = ways[found.method] if isinstance(found, Bootstrap) else "from the posterior"
+    title = ways[draws.method] if isinstance(draws, Bootstrap) else "from the posterior"
     header(figure, f"{len(points)} draws, {title}", artists)
     return figure
 

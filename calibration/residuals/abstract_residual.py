@@ -1,7 +1,7 @@
 """Contract of residuals: unknowns in, products of residuals and slopes out.
 
-Least squares needs no more of a residual r with slopes J than [J r]^T [J r]: a record of thousands of samples becomes one small
-matrix. A fit is any set of residuals, their weights, and priors (`calibration.fitting`).
+Least squares needs only [J r]^T [J r] of a residual r with slopes J. A record of thousands of samples becomes one small matrix.
+A fit is any set of residuals, their weights, and priors (`calibration.fitting`).
 """
 
 import abc
@@ -90,14 +90,20 @@ def group_products(
     x: Float[Array, " p"],
     tails: Float[Array, " g"] | None,
 ) -> Float[Array, "g k k"]:
-    """[J r]^T [J r] of every group of residuals, k the parameters and one; `cauchy_residual` beyond the `tails`."""
+    """Products [J r]^T [J r] of every group of residuals; k is the number of parameters plus one.
+
+    Args:
+        residuals: Function from coordinates (p,) to residuals by group.
+        x: Coordinates of the parameters (p,).
+        tails: Residuals beyond which `cauchy_residual` is used (g,); None: squares everywhere.
+    """
 
     def both(x):
         groups = residuals(x)
-        each = [None] * len(groups) if tails is None else tails
-        found = tuple(cauchy_residual(r, tail) for r, tail in zip(groups, each, strict=True))
-        return found, found
+        limits = [None] * len(groups) if tails is None else tails
+        values = tuple(cauchy_residual(r, tail) for r, tail in zip(groups, limits, strict=True))
+        return values, values
 
-    slopes, found = jax.jacfwd(both, has_aux=True)(x)
-    full = [jnp.concatenate([slope, r[:, None]], axis=1) for slope, r in zip(slopes, found, strict=True)]
-    return jnp.stack([one.T @ one for one in full])
+    slopes, values = jax.jacfwd(both, has_aux=True)(x)
+    full = [jnp.concatenate([slope, r[:, None]], axis=1) for slope, r in zip(slopes, values, strict=True)]
+    return jnp.stack([matrix.T @ matrix for matrix in full])

@@ -36,7 +36,15 @@ class Blocks(eqx.Module):
 
 
 class RunInBlocks(NamedTuple):
-    """A run while it is cut. Blocks begin `lag` (s) before their samples: the recorded motions are that late."""
+    """A run while it is cut into blocks.
+
+    Attributes:
+        run: The run.
+        path: State of the continuous run at every step of its clock.
+        dofs: Numbers of the fitted motions.
+        blocks: Blocks that were cut so far.
+        lag: Time (s) by which recorded motions are late; blocks begin that much before their samples.
+    """
 
     run: SeaRun
     path: State
@@ -45,7 +53,7 @@ class RunInBlocks(NamedTuple):
     lag: float = 0.0
 
     def step_of(self, samples: np.ndarray) -> np.ndarray:
-        """The last step of the clock at or before the motion that samples of the run show, within the run."""
+        """Last step of the clock at or before the motion that samples of the run show, within the run."""
         off = (np.asarray(self.run.times)[samples] - self.lag - float(self.run.times[0])) / float(self.run.step)
         return np.clip(np.floor(off + 1e-6).astype(int), 0, self.run.steps)
 
@@ -62,18 +70,18 @@ class RunInBlocks(NamedTuple):
             measured, factor = np.zeros(shape), np.zeros(shape)
             smooth, loose = np.zeros((2, shape[0])), np.zeros((2, shape[0]))
             piece = np.full(shape[0], none)
-            at = float(times[0]) + begins[i] * float(self.run.step)
-            for one, number in zip(pieces, numbers, strict=True):
-                j, x = self.dofs.index(one.dof), np.asarray(one.measured)
+            start = float(times[0]) + begins[i] * float(self.run.step)
+            for motion, number in zip(pieces, numbers, strict=True):
+                j, x = self.dofs.index(motion.dof), np.asarray(motion.measured)
                 measured[j], piece[j] = x[part], number
-                factor[j] = math.sqrt(one.weight / count) / x.std()
-                smooth[:, j], loose[:, j] = smoothed(times[one.begin + samples], x, at + self.lag)
-            here = times[pieces[0].begin + part]
-            needed = math.ceil((here[-1] - self.lag - at) / float(self.run.step) - 1e-6)
-            self.blocks.append((begins[i], span, here, measured, factor, smooth, loose, piece, max(needed, span)))
+                factor[j] = math.sqrt(motion.weight / count) / x.std()
+                smooth[:, j], loose[:, j] = smoothed(times[motion.begin + samples], x, start + self.lag)
+            sample_times = times[pieces[0].begin + part]
+            needed = math.ceil((sample_times[-1] - self.lag - start) / float(self.run.step) - 1e-6)
+            self.blocks.append((begins[i], span, sample_times, measured, factor, smooth, loose, piece, max(needed, span)))
 
     def stacked(self) -> Blocks:
-        """In arrays of one shape."""
+        """The blocks in arrays of one shape."""
         begin, span, times, measured, factor, smooth, loose, piece, steps = zip(*self.blocks, strict=True)
         longest = max(map(len, times))
 
@@ -87,23 +95,27 @@ class RunInBlocks(NamedTuple):
         return Blocks(jnp.array(begin), jnp.array(span), state, *padding, *whole, steps=max(steps))  # type: ignore[misc, arg-type]
 
 
-def smoothed(times: np.ndarray, x: np.ndarray, at: float) -> tuple[np.ndarray, np.ndarray]:
-    """Position and rate of a record at a time, by a quadratic through the samples near it, and their prior widths.
+def smoothed(times: np.ndarray, x: np.ndarray, time: float) -> tuple[np.ndarray, np.ndarray]:
+    """Position and rate of a record at a time, and the widths of their priors.
 
-    The widths are a share of the standard deviations of position and rate, and the scatter about the quadratic.
+    Position and rate are those of a quadratic through the samples near the time. The widths combine a share of the standard
+    deviations of position and rate with the scatter about the quadratic.
 
     Args:
         times: Sample times (s), (t,).
         x: Record (m, rad), (t,).
-        at: The time (s).
+        time: The time (s).
+
+    Returns:
+        Position and rate (2,), and their widths (2,).
     """
     rates = np.gradient(x, times)
     deviation, rate = float(x.std()), float(rates.std())
     pace = float(np.gradient(rates, times).std()) / rate
-    near = np.abs(times - at) <= SMOOTHING_SHARE * 2 * math.pi / pace
-    near[np.argsort(np.abs(times - at))[:MIN_SMOOTHING_SAMPLES]] = True
-    coefficients = np.polyfit(times[near] - at, x[near], 2)
-    scatter = float(np.std(x[near] - np.polyval(coefficients, times[near] - at)))
+    near = np.abs(times - time) <= SMOOTHING_SHARE * 2 * math.pi / pace
+    near[np.argsort(np.abs(times - time))[:MIN_SMOOTHING_SAMPLES]] = True
+    coefficients = np.polyfit(times[near] - time, x[near], 2)
+    scatter = float(np.std(x[near] - np.polyval(coefficients, times[near] - time)))
     loose = np.array(
         [math.hypot(INITIAL_STATE_DEVIATION * deviation, scatter), math.hypot(INITIAL_STATE_DEVIATION * rate, pace * scatter)]
     )

@@ -1,7 +1,7 @@
 """Residuals of decays: model less measured, with Jacobian products.
 
-A record's residual is model less measured at the recorded times, channel by channel. Its unknowns are the model's parameters,
-shared by all records, and its own: initial position, initial rate and sensor offset of every measured channel.
+A record's residual is model less measured at the recorded times, channel by channel. The model's parameters are unknowns that
+all records share. A record's own unknowns are initial position, initial rate and sensor offset of every measured channel.
 """
 
 from collections.abc import Sequence
@@ -41,9 +41,13 @@ class DecayData(eqx.Module):
 
 
 def gather_decays(records: Sequence[Record], model: Model, step: float, exact: bool = False) -> DecayData:
-    """Records as arrays, of sizes that records of nearly the same length share. `step` (s) is the largest time step.
+    """Records as arrays, of sizes that records of nearly the same length share.
 
-    `exact`: as many samples as the longest record has, for Fourier lines that are this record's.
+    Args:
+        records: The records.
+        model: The model, for its characteristic length.
+        step: Largest time step (s).
+        exact: Whether arrays have as many samples as the longest record, for Fourier lines that are this record's.
     """
     channels = [dof for dof in DOFS if any(dof in record.values for record in records)]
     longest = max(len(record.time) for record in records)
@@ -88,8 +92,11 @@ def crossing_period(record: Record) -> float:
 
 
 def first_guess(records: Sequence[Record], data: DecayData) -> Float[Array, "r 3*c"]:
-    """Position and rate at every record's start, from a quadratic through its first eighth of a period; no offset."""
-    own = np.zeros((len(records), 3, len(data.dofs)))
+    """First guess of each record's own unknowns: initial position and rate, and no offset.
+
+    Position and rate are those of a quadratic through the first eighth of a period.
+    """
+    guess = np.zeros((len(records), 3, len(data.dofs)))
     for i, record in enumerate(records):
         early = record.time - record.time[0] <= 0.125 * 2 * np.pi / float(data.pace[i])
         early[: min(8, len(early))] = True
@@ -99,9 +106,9 @@ def first_guess(records: Sequence[Record], data: DecayData) -> Float[Array, "r 3
             if values is None:
                 continue
             _, rate, position = np.polyfit(t, values[early], 2)
-            own[i, 0, j] = position / float(data.unit[i, j])
-            own[i, 1, j] = rate / float(data.unit[i, j] * data.pace[i])
-    return jnp.asarray(own.reshape(len(records), -1))
+            guess[i, 0, j] = position / float(data.unit[i, j])
+            guess[i, 1, j] = rate / float(data.unit[i, j] * data.pace[i])
+    return jnp.asarray(guess.reshape(len(records), -1))
 
 
 def shortened(record: DecayData) -> DecayData:
@@ -130,11 +137,11 @@ class DecayProblem(AbstractResidual):
     tail: Float[Array, "r c"] | None = None
 
     def up_to(self, until: Float[Array | np.ndarray, " r"]) -> "DecayProblem":
-        """The same with samples up to `until` (r,) only (s)."""
+        """The same problem with samples up to `until` only, (r,) in s."""
         return eqx.tree_at(lambda problem: problem.data.until, self, jnp.asarray(until))
 
     def motion(self, x: Float[Array, " p"], own: Float[Array, " o"], record: DecayData) -> Float[Array, "c t"]:
-        """What the sensors of one record should have read: the model's motion, and the sensors' offset."""
+        """Simulated readings of one record's sensors (m, rad): motion of the model plus sensor offsets."""
         model = self.space.model(self.model, x)
         rest = equilibrium(model) if self.rest is None else self.rest
         position, rate, offset = own.reshape(3, -1) * record.unit
@@ -150,7 +157,10 @@ class DecayProblem(AbstractResidual):
         return (observe(model, grid, record.time, base, in_waves=False)[:, dofs] + offset).T
 
     def residual(self, x: Float[Array, " p"], own: Float[Array, " o"], record: DecayData) -> Float[Array, "c t"]:
-        """Simulated less measured motion of one record (m, rad), up to its `until`; zero where there is no sample."""
+        """Simulated less measured motion of one record (m, rad), up to its `until`.
+
+        It is zero where there is no sample.
+        """
         return (self.motion(x, own, record) - record.measured) * (record.time <= record.until) * record.present
 
     def slopes(
@@ -161,7 +171,7 @@ class DecayProblem(AbstractResidual):
         basis: Float[Array, "p q"] | None = None,
         tail: Float[Array, " c"] | None = None,
     ) -> tuple[Float[Array, "c t"], Float[Array, "c t k"]]:
-        """Residual of one record, and its slopes along directions of the parameters and along its own unknowns.
+        """Residual of one record, and its slopes along directions of the parameters and of its own unknowns.
 
         Args:
             x: Coordinates of the parameters.

@@ -1,6 +1,6 @@
 """Simulation of tests in their measured waves, compared with the measured motions.
 
-Windows of one file are one continuous run: its sea is made once, of the whole record, and the platform starts at rest with the
+Windows of one file are one continuous run. Its sea is made once, of the whole record, and the platform starts at rest with the
 file. Everything is SI at full scale.
 """
 
@@ -44,12 +44,20 @@ NO_ZERO = "the campaign states no `zero`: motions count from the reference posit
 
 @dataclass(frozen=True, eq=False)
 class RunSea:
-    """The sea of a run. `mismatch`: share of the record, in the band, that the orders asked for miss."""
+    """Sea of a run.
+
+    Attributes:
+        sea: The sea.
+        mismatch: RMS of the simulated less the measured elevation in the band, over that of the measured elevation.
+        rounds: Number of iterations that separated the second order.
+        inside: Fraction of the record's variance in the band.
+        notes: Warnings, as sentences.
+    """
 
     sea: IrregularSea
     mismatch: float
     rounds: int
-    inside: float  # share of the record's variance in the band
+    inside: float
     notes: tuple[str, ...]
 
 
@@ -96,7 +104,11 @@ class Comparison(NamedTuple):
 
 
 def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
-    """The sea of a run's whole record. Raises InputError where the band or the record do not do."""
+    """Sea of a run's whole record.
+
+    Raises:
+        InputError: The order, the band or the record is unsuitable.
+    """
     if run.directions is not None and options.order != 1:
         raise InputError(run.file, [Problem("order", "1 in a sea of several headings, as its test states", f"{options.order}")])
     inside = share_within(run.wave, run.step, options.low, options.cutoff)
@@ -147,7 +159,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         period = record_peak_period(run.wave, run.step, options.low, options.cutoff)
         count = float(run.time[-1] - run.time[0]) / period
         limits = sea_limits(4 * float(np.std(run.wave)), period, environment, options.order, count)
-        notes += [f"{run.file}: {one.text}" for one in limits]
+        notes += [f"{run.file}: {limit.text}" for limit in limits]
     return RunSea(sea, separated.mismatch, separated.rounds, inside, tuple(notes))
 
 
@@ -173,15 +185,15 @@ def seas_of(campaign: Campaign, environment: Environment, options: Options, seve
     Raises:
         InputError: A record makes no sea, or a sea has several headings and may not.
     """
-    found = runs(campaign)
-    spread = [record.id for run in found if run.directions is not None for record in run.records]
+    campaign_runs = runs(campaign)
+    spread = [record.id for run in campaign_runs if run.directions is not None for record in run.records]
     if spread and not several_headings:
         expected = "tests in long-crested waves: seas of several headings can be simulated and compared, not fitted"
         remedy = "Mark such tests `use: ignore`, or state the heading alone."
         raise InputError(str(campaign.folder / "campaign.yaml"), [Problem("tests", expected, ", ".join(spread), remedy)])
-    made = [(run, sea_of(run, environment, options)) for run in found]
+    made = [(run, sea_of(run, environment, options)) for run in campaign_runs]
     if made and options.order == 2 and not campaign.manifest.records.model_fields_set:
-        hint = second_order_hint([(run, one.sea) for run, one in made], (options.low, options.cutoff))
+        hint = second_order_hint([(run, run_sea.sea) for run, run_sea in made], (options.low, options.cutoff))
         made[0] = (made[0][0], dataclasses.replace(made[0][1], notes=(*made[0][1].notes, *hint)))
     return tuple(made)
 
@@ -193,9 +205,18 @@ def compare(
     say: Callable[[str], Any] = lambda _: None,
     made: Seas | None = None,
 ) -> Comparison:
-    """Simulate every run and compare, test by test. `made` are the runs and their seas, where those are at hand.
+    """Simulate every run and compare it with the measurement, test by test.
 
-    Raises InputError, and Diverged where a motion grows beyond all bounds.
+    Args:
+        campaign: The campaign.
+        model: The model.
+        options: Options of the waves.
+        say: Function that is called with a line of progress for every run.
+        made: Runs and their seas, where they are at hand.
+
+    Raises:
+        InputError: A sea cannot be made, or the model does not have its headings.
+        Diverged: A motion grows beyond all bounds.
     """
     model = with_diffraction(model, options)
     made = seas_of(campaign, model.environment, options, several_headings=True) if made is None else made
@@ -204,27 +225,27 @@ def compare(
     origin = equilibrium(model) if from_rest else None
     notes = [] if from_rest else [NO_ZERO]
     tests = []
-    for run, one in made:
-        waves = one.sea.components
+    for run, run_sea in made:
+        waves = run_sea.sea.components
         say(f"{run.file}: {waves.omega.size} waves of {run.time[-1] - run.time[0]:.0f} s, order {options.order}; simulating")
-        if not one.sea.long_crested and (fault := heading_fault(model, np.asarray(waves.heading))) is not None:
+        if not run_sea.sea.long_crested and (fault := heading_fault(model, np.asarray(waves.heading))) is not None:
             raise InputError(run.file, [Problem("sea", *fault)])
         parts = run_segments(run, run.records, model, options.low, options.cutoff)
         try:
-            for part, found_there, _ in simulate_segments(model, run, parts, one.sea, step):
+            for part, simulation, _ in simulate_segments(model, run, parts, run_sea.sea, step):
                 motion = np.full((len(run.time), 6), np.nan)
                 times = run.time[: part.end + 1]
-                readings = _observed(model, found_there.grid, jnp.asarray(times[part.begin :]), origin, in_waves=True)
+                readings = _observed(model, simulation.grid, jnp.asarray(times[part.begin :]), origin, in_waves=True)
                 motion[part.begin : part.end + 1] = samples = np.asarray(readings)
                 if not np.isfinite(samples).all():
                     first = times[part.begin + np.argmin(np.isfinite(samples).all(axis=1))]
                     raise Diverged(f"{run.file}: the motion grows beyond all bounds at {first:.4g} s")
-                wave = one.sea.gauge(times[part.begin :], run.position)
+                wave = run_sea.sea.gauge(times[part.begin :], run.position)
                 wave = np.concatenate([np.full(part.begin, np.nan), wave])
                 tests += [_test(run, record, motion, wave, campaign.manifest.scale) for record in part.records]
         except ValueError as error:
             raise Diverged(f"{run.file}: {error}") from None
-        notes += [*run.notes, *one.notes]
+        notes += [*run.notes, *run_sea.notes]
     notes += motion_hints(map(_moving, tests))
     order = [record.id for record in campaign.records]
     return Comparison(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step, model.hull)
@@ -244,7 +265,10 @@ def _moving(test: SeaTest) -> dict[str, tuple[np.ndarray, np.ndarray]]:
 
 
 def peak_period(run: Run, record: Record, scale: float) -> float:
-    """Stated peak period (s, full scale) of a test, or the period of its regular waves; as measured where none is stated."""
+    """Stated peak period (s, full scale) of a test, or the period of its regular waves.
+
+    Where none is stated, the period is measured.
+    """
     stated = record.test.peak_period if record.kind == "irregular" else record.test.period
     if stated is not None:
         return stated * scale**0.5
@@ -253,9 +277,11 @@ def peak_period(run: Run, record: Record, scale: float) -> float:
 
 def _test(run: Run, record: Record, motion: np.ndarray, wave: np.ndarray, scale: float) -> SeaTest:
     """A test's samples after its transient, on the run's even clock."""
-    at, whole = run.samples(record), samples_after_transient(run, record)
+    indices, whole = run.samples(record), samples_after_transient(run, record)
     series = tuple(
-        Series(dof, np.interp(whole, at, record.values[dof]), motion[whole, DOFS.index(dof)], 0.0, record.noise[dof], False)
+        Series(
+            dof, np.interp(whole, indices, record.values[dof]), motion[whole, DOFS.index(dof)], 0.0, record.noise[dof], False
+        )
         for dof in DOFS
         if dof in record.values
     )

@@ -48,8 +48,8 @@ class SimulatedSegment(NamedTuple):
 
 def samples_after_transient(run: Run, record: Record) -> np.ndarray:
     """Indices into the run's clock of a test's samples after its transient."""
-    at = run.samples(record)
-    whole = np.arange(at[0], at[-1] + 1)
+    indices = run.samples(record)
+    whole = np.arange(indices[0], indices[-1] + 1)
     return whole[run.time[whole] >= record.time[0] + record.transient - 0.5 * run.step]
 
 
@@ -90,7 +90,7 @@ def run_segments(run: Run, records: Sequence[Record], model: Model, low: float, 
         The segments, in order of time.
     """
     records = sorted(records, key=lambda record: record.time[0])
-    ends = [(int(at[0]), int(at[-1])) for at in map(run.samples, records)]
+    ends = [(int(indices[0]), int(indices[-1])) for indices in map(run.samples, records)]
     if model.in_sea(SeaState(1.0, 1.0)) is model:
         return (RunSegment(tuple(records), 0, max(end for _, end in ends), None),)
     begins = [0, *(begin for begin, _ in ends[1:])]
@@ -122,9 +122,9 @@ def simulate_segments(
     rest = State(equilibrium(model), jnp.zeros(6), model.rest().memory)
     start = None
     for i, part in enumerate(parts):
-        here = model if part.state is None else model.in_sea(part.state)
+        segment_model = model if part.state is None else model.in_sea(part.state)
         times = jnp.asarray(run.time[part.begin : part.end + 1])
-        simulation = simulate_irregular(here, sea, rest if start is None else start, times, step, margin=margin)
+        simulation = simulate_irregular(segment_model, sea, rest if start is None else start, times, step, margin=margin)
         yield SimulatedSegment(part, simulation, start)
         if i + 1 < len(parts):
             after = parts[i + 1].begin - part.begin

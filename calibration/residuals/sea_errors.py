@@ -33,7 +33,7 @@ class Band:
 
 
 def channels(test: SeaTest) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Measured and simulated, the wave first, then motions, in m and deg."""
+    """Measured and simulated channels, the wave first, then motions, in m and deg."""
     motions = {s.channel: (for_people(s.channel, s.measured), for_people(s.channel, s.simulated)) for s in test.fit.series}
     return {"wave": (test.wave, test.simulated_wave), **motions}
 
@@ -44,17 +44,17 @@ def density(test: SeaTest, x: np.ndarray) -> PowerSpectrum:
 
 
 def in_bands(test: SeaTest) -> dict[str, dict[str, Band]]:
-    """channel -> low_frequency, wave_frequency -> integrals."""
-    found: dict[str, dict[str, Band]] = {}
+    """Integrals of the spectra, by channel and band (`low_frequency`, `wave_frequency`)."""
+    bands: dict[str, dict[str, Band]] = {}
     for name, pair in channels(test).items():
         spectra = [density(test, x) for x in pair]
         limits = bands_of(name, test.peak_period)
-        found[name] = {k: Band(*band, *(band_integral(s, *band) for s in spectra)) for k, band in limits.items()}
-    return found
+        bands[name] = {k: Band(*band, *(band_integral(s, *band) for s in spectra)) for k, band in limits.items()}
+    return bands
 
 
 def moving(test: SeaTest) -> list[str]:
-    """The motions that are worth a line."""
+    """Motions whose measured records are large beside others of their unit."""
     return moving_channels({series.channel: series.measured for series in test.fit.series})
 
 
@@ -62,7 +62,7 @@ def amplitude(test: SeaTest, x: np.ndarray) -> float:
     """Amplitude at the period of regular waves, by least squares over whole periods."""
     time = test.fit.time
     whole = max(1.0, math.floor((time[-1] - time[0]) / test.peak_period)) * test.peak_period
-    kept = time >= time[-1] - whole
-    phase = 2 * math.pi / test.peak_period * time[kept]
-    basis = np.stack([np.ones(kept.sum()), np.cos(phase), np.sin(phase)], axis=1)
-    return float(np.hypot(*np.linalg.lstsq(basis, x[kept], rcond=None)[0][1:]))
+    used = time >= time[-1] - whole
+    phase = 2 * math.pi / test.peak_period * time[used]
+    basis = np.stack([np.ones(used.sum()), np.cos(phase), np.sin(phase)], axis=1)
+    return float(np.hypot(*np.linalg.lstsq(basis, x[used], rcond=None)[0][1:]))

@@ -1,7 +1,7 @@
 """Residuals of tests in waves: energies in bands, spectra, or motions.
 
-The windows of a file are one continuous run that starts at rest with it, in the sea of its own wave record, so its motions have
-no unknowns of their own: what is fitted is the model's parameters.
+The windows of a file are one continuous run, in the sea of its own wave record. The run starts at rest with the file, so its
+motions have no unknowns of their own. Only the model's parameters are fitted.
 """
 
 import math
@@ -46,7 +46,15 @@ SEA_MARGIN = 30.0
 
 
 class BandEnergies(eqx.Module):
-    """Integrals of a motion's spectrum over bands: `analysis.BandWeights`, one row each, and what was measured (m2, rad2)."""
+    """Integrals of a motion's spectrum over bands, as in `BandWeights`, and their measured values.
+
+    Attributes:
+        starts: First sample of each segment, (g,).
+        window: Window, (s,).
+        weight: Weight of each frequency from `first` on, a row for each band, (b, f).
+        measured: Measured integrals (m2, rad2), (b,).
+        first: Index of the first frequency that has a weight.
+    """
 
     starts: Int[Array, " g"]
     window: Float[Array, " s"]
@@ -63,21 +71,31 @@ class BandEnergies(eqx.Module):
 
 
 class TestMotion(eqx.Module):
-    """One motion of one test: its samples on the run's clock from `begin` on, and its energies in bands, if it has any."""
+    """One motion of one test.
+
+    Attributes:
+        measured: Samples on the run's clock (m, rad), (n,).
+        energies: Energies in bands; None where it has none.
+        begin: Index of the first sample on the run's clock.
+        dof: Number of the motion.
+        test: Name of the test.
+        weight: Weight of the squares of its residuals.
+        names: Names of the bands, each as often as it has cells.
+    """
 
     measured: Float[Array, " n"]
     energies: BandEnergies | None
     begin: int = eqx.field(static=True)
     dof: int = eqx.field(static=True)
     test: str = eqx.field(static=True)
-    weight: float = eqx.field(static=True)  # of its residuals' squares
-    names: tuple[str, ...] = eqx.field(static=True)  # of the bands, each as often as it has cells
+    weight: float = eqx.field(static=True)
+    names: tuple[str, ...] = eqx.field(static=True)
 
 
 class SeaRun(eqx.Module):
     """One file of a test in waves, or a stretch of it.
 
-    A stretch begins where the model that the problem was set up for leaves the stretch before. A test's transient forgets that.
+    A stretch begins in the state in which the model of the set-up leaves the stretch before. A test's transient forgets it.
 
     Attributes:
         sea: Sea on the clock of the time integration.
@@ -99,7 +117,7 @@ class SeaRun(eqx.Module):
 
 
 class SeaProblem(AbstractGroupedResidual):
-    """A calibration's fixed part in waves. `from_rest`: motions count from the static equilibrium."""
+    """Residuals of tests in waves. `from_rest`: motions count from the static equilibrium."""
 
     model: Model
     space: ParameterSpace = eqx.field(static=True)
@@ -117,9 +135,9 @@ class SeaProblem(AbstractGroupedResidual):
         at_rest = State(rest, jnp.zeros(6), model.rest().memory)
 
         def motion(run: SeaRun) -> tuple[Float[Array, "t 6"], Float[Array, "t 6"]]:
-            here = model if run.state is None else model.in_sea(run.state)
+            run_model = model if run.state is None else model.in_sea(run.state)
             start = at_rest if run.start is None else run.start
-            grid = integrate(here, run.sea, start, run.times[0], run.step, run.steps, "ab4")
+            grid = integrate(run_model, run.sea, start, run.times[0], run.step, run.steps, "ab4")
             readings = observe(model, grid, run.times, rest if self.from_rest else None, in_waves=True)
             return grid.at(run.times)[0], readings
 
@@ -127,20 +145,23 @@ class SeaProblem(AbstractGroupedResidual):
 
     @property
     def observations(self) -> int:
-        """How many there are: one for every band, and one for every motion, whose residual's square is relative to its own."""
+        """Number of observations: one for every band, and one for every motion.
+
+        The squares of a motion's residual are relative to the motion's variance.
+        """
         pieces = [piece for run in self.runs for piece in run.pieces]
         return sum(self.in_bands) * sum(len(piece.names) for piece in pieces) + self.in_bands.count(False)
 
     @property
     def in_bands(self) -> tuple[bool, ...]:
-        """Of every group of residuals, whether it is of energies in bands."""
+        """Whether each group of residuals is of energies in bands."""
         pieces = [piece for run in self.runs for piece in run.pieces]
         motions = [piece for piece in pieces if self.sample_by_sample(piece)]
         energies = self.objective in OF_ENERGY and any(piece.energies is not None for piece in pieces)
         return (*([True] if energies else []), *[False] * len(motions))
 
     def sample_by_sample(self, piece: TestMotion) -> bool:
-        """Whether a motion itself is fitted: of regular waves, which have no bands, it always is."""
+        """Whether a motion itself is fitted; in regular waves, which have no bands, it always is."""
         return self.objective not in ("bands", "spectrum") or piece.energies is None
 
     def residuals(self, x: Float[Array, " p"]) -> tuple[Float[Array, " _"], ...]:
@@ -161,16 +182,19 @@ class SeaProblem(AbstractGroupedResidual):
             x: Coordinates of the parameters, (p,).
         """
         energies, motions = [], []
-        found = self.motions(x)
-        far = [farthest(one, self.points, run.sea) - run.sea.half for (one, _), run in zip(found, self.runs, strict=True)]
-        for run, (_, readings) in zip(self.runs, found, strict=True):
+        run_motions = self.motions(x)
+        far = [
+            farthest(position, self.points, run.sea) - run.sea.half
+            for (position, _), run in zip(run_motions, self.runs, strict=True)
+        ]
+        for run, (_, readings) in zip(self.runs, run_motions, strict=True):
             for piece in run.pieces:
-                there = readings[piece.begin : piece.begin + piece.measured.shape[0], piece.dof]
+                simulated = readings[piece.begin : piece.begin + piece.measured.shape[0], piece.dof]
                 if self.objective in OF_ENERGY and piece.energies is not None:
-                    off = jnp.log(piece.energies.of(there) / piece.energies.measured)
+                    off = jnp.log(piece.energies.of(simulated) / piece.energies.measured)
                     energies.append(math.sqrt(piece.weight) * off)
                 if self.sample_by_sample(piece):
-                    off = there - there.mean() - (piece.measured - piece.measured.mean())
+                    off = simulated - simulated.mean() - (piece.measured - piece.measured.mean())
                     motions.append(off * math.sqrt(piece.weight / off.size) / jnp.std(piece.measured))
         return (*([jnp.concatenate(energies)] if energies else []), *motions), (jnp.stack(far) <= 0).all()
 
@@ -192,8 +216,19 @@ def set_up_waves(
     step: float,
     objective: Objective = "bands",
 ) -> SeaProblem:
-    """The fixed part of a calibration of `model` to the tests marked `fit` of runs; `step` (s) is the largest time step."""
-    found = []
+    """Set up the residuals of a model against the tests in waves marked `fit`.
+
+    Args:
+        model: The model.
+        made: Runs and their seas.
+        space: The free parameters.
+        options: Options of the waves.
+        from_rest: Whether motions count from the static equilibrium.
+        scale: Scale of the campaign, for stated periods.
+        step: Largest time step (s).
+        objective: The objective.
+    """
+    sea_runs = []
     for run, sea in made:
         parts = run_segments(run, run.records, model, options.low, options.cutoff)
         fitted = [[record for record in part.records if record.use == "fit"] for part in parts]
@@ -210,54 +245,68 @@ def set_up_waves(
                 assert isinstance(taken.sea, SupportSea)  # `seas_of` refuses others
                 # arrays, so that another state is not compiled anew
                 state = None if part.state is None else jax.tree.map(jnp.asarray, part.state)
-                found.append(SeaRun(taken.sea, times, jnp.asarray(taken.step), pieces, start, state, taken.steps))
+                sea_runs.append(SeaRun(taken.sea, times, jnp.asarray(taken.step), pieces, start, state, taken.steps))
     points, rest = jnp.asarray(model.hull.extremities()), None if space.moves_equilibrium else equilibrium(model)
-    return SeaProblem(model, space, None, tuple(found), rest, points, from_rest, objective)
+    return SeaProblem(model, space, None, tuple(sea_runs), rest, points, from_rest, objective)
 
 
 def _pieces(run: Run, record: Record, scale: float, begin: int, cut: bool) -> list[TestMotion]:
-    """The motions of a test that are worth fitting, after its transient, on the run's even clock from sample `begin` on, their
-    bands `cut` into cells or not."""
-    at, whole = run.samples(record), samples_after_transient(run, record)
-    values = {dof: np.interp(whole, at, record.values[dof]) for dof in DOFS if dof in record.values}
+    """Large motions of a test after its transient, on the run's even clock.
+
+    Args:
+        run: The run.
+        record: Record of the test.
+        scale: Scale of the campaign, for stated periods.
+        begin: Sample of the run's clock that samples are counted from.
+        cut: Whether bands are cut into cells.
+    """
+    indices, whole = run.samples(record), samples_after_transient(run, record)
+    values = {dof: np.interp(whole, indices, record.values[dof]) for dof in DOFS if dof in record.values}
     period = peak_period(run, record, scale)
     pieces = []
     for dof in moving_channels(values):
         limits = bands_of(dof, period) if record.kind == "irregular" else {}
         made = [(name, energies_of(values[dof], run.step, *limit, cut)) for name, limit in limits.items()]
-        names = tuple(name for name, one in made for _ in one.measured)
-        energies = joined_bands([one for _, one in made]) if made else None
+        names = tuple(name for name, band in made for _ in band.measured)
+        energies = joined_bands([band for _, band in made]) if made else None
         first, stated = int(whole[0]) - begin, record.test.weight
         pieces.append(TestMotion(jnp.asarray(values[dof]), energies, first, DOFS.index(dof), record.id, stated, names))
     return pieces
 
 
 def energies_of(x: Float[np.ndarray, " n"], step: float, low: float, high: float, cut: bool) -> BandEnergies:
-    """The energy of a record, sampled every `step` (s), between `low` and `high` (Hz): in one band, or `cut` into equal cells.
+    """Energy of a record in a band, or in equal cells of the band.
 
-    A cell's energy is that of `MIN_CELL_CYCLES` periods at least, and of two lines of the spectrum. There are at most
-    `CELLS_PER_BAND` cells. Cells with less than `MIN_ENERGY_SHARE` of the largest one's energy are left out, since there the
-    sensor's noise is most of the energy.
+    The width of a cell times the record's length is at least `MIN_CELL_CYCLES`. A cell has at least two lines of the
+    spectrum. There are at most `CELLS_PER_BAND` cells. Cells with less than `MIN_ENERGY_SHARE` of the largest one's energy are
+    left out, since there the sensor's noise is most of the energy.
+
+    Args:
+        x: Record (m, rad), (n,).
+        step: Sampling interval (s).
+        low: Lower end of the band (Hz).
+        high: Upper end of the band (Hz).
+        cut: Whether the band is cut into cells.
     """
     line = 1 / min(SEGMENT, len(x) * step)
     narrowest = max(MIN_CELL_CYCLES / (len(x) * step), 2 * line)
     count = int(np.clip((high - low) / narrowest, 1, CELLS_PER_BAND)) if cut else 1
     edges = np.linspace(low, high, count + 1)
     made = [band_weights(len(x), step, *pair) for pair in pairwise(edges)]
-    measured = np.array([one.integral(x) for one in made])
-    kept = [i for i in range(count) if measured[i] >= MIN_ENERGY_SHARE * measured.max()]
-    first = min(made[i].first for i in kept)
-    weight = np.zeros((len(kept), max(made[i].first + len(made[i].weight) for i in kept) - first))
-    for row, i in zip(weight, kept):
+    measured = np.array([weights.integral(x) for weights in made])
+    cells = [i for i in range(count) if measured[i] >= MIN_ENERGY_SHARE * measured.max()]
+    first = min(made[i].first for i in cells)
+    weight = np.zeros((len(cells), max(made[i].first + len(made[i].weight) for i in cells) - first))
+    for row, i in zip(weight, cells):
         row[made[i].first - first :][: len(made[i].weight)] = made[i].weight
     starts, taper = jnp.asarray(made[0].starts), jnp.asarray(made[0].window)
-    return BandEnergies(starts, taper, jnp.asarray(weight), jnp.asarray(measured[kept]), first)
+    return BandEnergies(starts, taper, jnp.asarray(weight), jnp.asarray(measured[cells]), first)
 
 
 def joined_bands(parts: Sequence[BandEnergies]) -> BandEnergies:
-    """Bands of one motion as one."""
-    first = min(one.first for one in parts)
-    end = max(one.first + one.weight.shape[1] for one in parts)
-    rows = [jnp.pad(one.weight, ((0, 0), (one.first - first, end - one.first - one.weight.shape[1]))) for one in parts]
-    measured = jnp.concatenate([one.measured for one in parts])
+    """Join bands of one motion."""
+    first = min(part.first for part in parts)
+    end = max(part.first + part.weight.shape[1] for part in parts)
+    rows = [jnp.pad(part.weight, ((0, 0), (part.first - first, end - part.first - part.weight.shape[1]))) for part in parts]
+    measured = jnp.concatenate([part.measured for part in parts])
     return BandEnergies(parts[0].starts, parts[0].window, jnp.concatenate(rows), measured, first)

@@ -1,14 +1,19 @@
 """Residuals of tests in waves by multiple shooting: blocks with own initial states.
 
-Over an hour a natural period that is slightly wrong puts slow motions out of phase: the sum of squares of the whole motion has
-many minima, and is about phase alone. In a block of a few periods the phase cannot wander. What is unknown beside the
-parameters: position and rate of the fitted motions at every block's start, with a vague prior about what the record has there,
-and of every motion of a test a constant, for only what is about the mean is fitted. What is not fitted, and loads' memories,
-start from where the continuous run is, of the model that a round of the fit begins with. That blocks join is not asked for; how
-far they do not says what the model lacks.
+Over an hour a slightly wrong natural period puts slow motions out of phase. The sum of squares of the whole motion then has
+many minima, and is about phase alone. In a block of a few periods the phase cannot wander.
 
-Bock 1983, Recent advances in parameter identification techniques for O.D.E.; Bock and Plitt 1984, A multiple shooting algorithm
-for direct solution of optimal control problems, IFAC Proceedings 17(2), 1603-1608.
+Unknowns beside the parameters:
+
+- Position and rate of the fitted motions at every block's start, with a vague prior about the values of the record there.
+- A constant for every motion of a test, since only the motion about its mean is fitted.
+
+Motions that are not fitted, and memories of loads, start from the continuous run. That run is made with the model that a round
+of the fit begins with. Blocks need not join. The jumps between them say what the model lacks.
+
+References:
+    Bock 1983, Recent advances in parameter identification techniques for O.D.E. Bock and Plitt 1984, A multiple shooting
+    algorithm for direct solution of optimal control problems, IFAC Proceedings 17(2), 1603-1608.
 """
 
 import math
@@ -51,10 +56,10 @@ class BlockResiduals(NamedTuple):
 
 
 class BlockProblem(AbstractResidual):
-    """A calibration's fixed part in waves, by blocks.
+    """Residuals of tests in waves, by blocks.
 
-    Its `Unknowns`: `shared` are the parameters' coordinates and every motion's constant, `own` position and rate of every
-    block. What is recorded of a motion is its position from `rest`, or from the reference position, plus its constant.
+    Its `Unknowns` are the parameters' coordinates and every motion's constant (`shared`), and position and rate of every
+    block (`own`). The record of a motion is its position from `rest`, or from the reference position, plus its constant.
     """
 
     model: Model
@@ -67,21 +72,21 @@ class BlockProblem(AbstractResidual):
 
     @property
     def observations(self) -> int:
-        """One for every motion of a test."""
+        """Number of observations: one for every motion of a test."""
         return self.constant.shape[0]
 
     @property
     def piece(self) -> Int[Array, "b c"]:
-        """`Blocks.piece` of all."""
-        return jnp.concatenate([one.piece for one in self.blocks])
+        """`Blocks.piece` of all blocks."""
+        return jnp.concatenate([blocks.piece for blocks in self.blocks])
 
     def begin(self) -> Unknowns:
-        """From the starting values, and from what the records have."""
+        """First unknowns: starting values of the parameters, and states from the records."""
         shared = jnp.concatenate([self.space.start, jnp.zeros(self.observations)])
         return Unknowns(shared, jnp.zeros((len(self.piece), 2 * len(self.dofs))))
 
     def continued(self, x: Float[Array, " p"]) -> "BlockProblem":
-        """With what is not fitted where the continuous runs of other coefficients are."""
+        """The problem with blocks that start from the continuous runs at other coordinates."""
         model = self.space.model(self.model, x)
         paths = [_continuous(model, run) for run in self.sea.runs]
         states = [jax.tree.map(lambda leaf, b=b: leaf[b.begin], path) for path, b in zip(paths, self.blocks, strict=True)]
@@ -90,50 +95,53 @@ class BlockProblem(AbstractResidual):
     def simulated(
         self, x: Float[Array, " p"], constants: Float[Array, " m"], own: Float[Array, " o"], block: Blocks, run: SeaRun
     ) -> tuple[Float[Array, "c t"], Grid, Float[Array, " c"]]:
-        """What one block should have read, its motion, and the constants."""
+        """Simulated readings of one block (m, rad), its motion, and the constants of its channels."""
         model, dofs = self.space.model(self.model, x), jnp.array(self.dofs)
-        here = model if run.state is None else model.in_sea(run.state)
+        run_model = model if run.state is None else model.in_sea(run.state)
         base = jnp.zeros(6)
         if self.sea.from_rest:
             base = equilibrium(model) if self.sea.rest is None else self.sea.rest
         constant = jnp.append(self.constant + self.wide * constants, 0.0)[block.piece]
         position, rate = block.smooth + block.loose * own.reshape(2, -1)
-        fitted, there = block.loose[0] > 0, block.state
-        rates = model.position_rate(there.position, there.velocity)
-        reading, reading_rate = jax.jvp(model.seen, (there.position,), (rates,))
+        fitted, continuous = block.loose[0] > 0, block.state
+        rates = model.position_rate(continuous.position, continuous.velocity)
+        reading, reading_rate = jax.jvp(model.seen, (continuous.position,), (rates,))
         origin = model.seen(base)[dofs]
         reading = reading.at[dofs].set(jnp.where(fitted, origin + position - constant, reading[dofs]))
         reading_rate = reading_rate.at[dofs].set(jnp.where(fitted, rate, reading_rate[dofs]))
         q, rates = motion_behind(model, reading, reading_rate)
         sea = run.sea.from_step(block.begin, block.steps + EXTRA_STEPS)
-        state = State(q, model.body_velocity(q, rates), there.memory)
-        grid = integrate(here, sea, state, sea.start, run.step, block.steps, "ab4")
+        state = State(q, model.body_velocity(q, rates), continuous.memory)
+        grid = integrate(run_model, sea, state, sea.start, run.step, block.steps, "ab4")
         readings = observe(model, grid, block.times, base, in_waves=True)[:, dofs]
         return (readings + constant).T, grid, constant
 
     def block_residuals(self, unknowns: Unknowns) -> BlockResiduals:
-        """All blocks."""
+        """Residuals and ends of all blocks."""
         x, constants = jnp.split(unknowns.shared, [len(self.space.free)])
 
-        def one(own: Array, block: Blocks, run: SeaRun) -> BlockResiduals:
-            seen, grid, _ = self.simulated(x, constants, own, block, run)
+        def residuals_of(own: Array, block: Blocks, run: SeaRun) -> BlockResiduals:
+            readings, grid, _ = self.simulated(x, constants, own, block, run)
             ends = grid.position[:, jnp.array(self.dofs)]  # of the platform itself: what is to join
             beyond = farthest(grid.position, self.sea.points, run.sea) - run.sea.half
-            return BlockResiduals((seen - block.measured) * block.factor, ends[0], ends[block.span], beyond)
+            return BlockResiduals((readings - block.measured) * block.factor, ends[0], ends[block.span], beyond)
 
-        found = self._by_run(unknowns.own, one)
-        longest = max(shot.residual.shape[2] for shot in found)
-        found = [s._replace(residual=jnp.pad(s.residual, ((0, 0), (0, 0), (0, longest - s.residual.shape[2])))) for s in found]
-        return jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
+        shots = self._by_run(unknowns.own, residuals_of)
+        longest = max(shot.residual.shape[2] for shot in shots)
+        shots = [s._replace(residual=jnp.pad(s.residual, ((0, 0), (0, 0), (0, longest - s.residual.shape[2])))) for s in shots]
+        return jax.tree.map(lambda *parts: jnp.concatenate(parts), *shots)
 
     def products(self, unknowns: Unknowns) -> Float[Array, "b c+1 k k"]:
-        """Products [J r]^T [J r] by block and channel; the last channel is the prior of the block's own unknowns."""
+        """Products [J r]^T [J r] by block and channel.
+
+        The last channel is the prior of the block's own unknowns.
+        """
         p = len(self.space.free)
         x, constants = jnp.split(unknowns.shared, [p])
         m, o = len(constants), unknowns.own.shape[1]
         widths = jnp.append(self.wide, 0.0)
 
-        def one(own: Array, block: Blocks, run: SeaRun) -> Array:
+        def products_of(own: Array, block: Blocks, run: SeaRun) -> Array:
             def residual(z):
                 r = (self.simulated(z[:p], constants, z[p:], block, run)[0] - block.measured) * block.factor
                 return r, r
@@ -148,20 +156,20 @@ class BlockProblem(AbstractResidual):
             prior = jnp.concatenate([jnp.zeros((o, p + m)), jnp.eye(o), own[:, None]], axis=1)
             return jnp.concatenate([jnp.einsum("ctk,ctl->ckl", full, full), (prior.T @ prior)[None]])
 
-        return jnp.concatenate(self._by_run(unknowns.own, one))
+        return jnp.concatenate(self._by_run(unknowns.own, products_of))
 
-    def _by_run(self, own: Array, one: Callable[[Array, Blocks, SeaRun], Any]) -> list[Any]:
-        """one(own unknowns, block, run) of every block, block after block; one entry for each run."""
-        found, done = [], 0
+    def _by_run(self, own: Array, function: Callable[[Array, Blocks, SeaRun], Any]) -> list[Any]:
+        """Values of function(own unknowns, block, run) for every block; one entry for each run."""
+        results, done = [], 0
         for run, blocks in zip(self.sea.runs, self.blocks, strict=True):
             count = blocks.begin.shape[0]
-            found.append(jax.lax.map(partial(_of_pair, one, run), (own[done : done + count], blocks)))
+            results.append(jax.lax.map(partial(_of_pair, function, run), (own[done : done + count], blocks)))
             done += count
-        return found
+        return results
 
 
-def _of_pair(one: Callable[[Array, Blocks, SeaRun], Any], run: SeaRun, pair: tuple[Array, Blocks]) -> Any:
-    return one(*pair, run)
+def _of_pair(function: Callable[[Array, Blocks, SeaRun], Any], run: SeaRun, pair: tuple[Array, Blocks]) -> Any:
+    return function(*pair, run)
 
 
 @eqx.filter_jit
@@ -171,7 +179,7 @@ def simulate_blocks(problem: BlockProblem, unknowns: Unknowns) -> BlockResiduals
 
 
 def set_up_blocks(sea: SeaProblem, period: float) -> BlockProblem:
-    """The tests of a problem in waves, cut into blocks of `PERIODS_PER_BLOCK` times a period (s)."""
+    """Cut the tests of a problem in waves into blocks of `PERIODS_PER_BLOCK` times a period (s)."""
     dofs = _fitted(sea)
     total = sum(len(run.pieces) for run in sea.runs)
     origin = sea.model.seen(equilibrium(sea.model) if sea.from_rest else jnp.zeros(6))
@@ -189,8 +197,8 @@ def set_up_blocks(sea: SeaProblem, period: float) -> BlockProblem:
             made.cut(pieces, range(len(constant), len(constant) + len(pieces)), period, total)
             for piece in pieces:
                 x = np.asarray(piece.measured)
-                at = made.step_of(np.arange(piece.begin, piece.begin + len(x)))
-                constant.append(float(x.mean() - readings[at, piece.dof].mean()))
+                steps = made.step_of(np.arange(piece.begin, piece.begin + len(x)))
+                constant.append(float(x.mean() - readings[steps, piece.dof].mean()))
                 wide.append(float(x.std()))
         blocks.append(made.stacked())
     return BlockProblem(sea.model, sea.space, sea, tuple(blocks), jnp.asarray(constant), jnp.asarray(wide), dofs)
@@ -208,7 +216,7 @@ def _fitted(sea: SeaProblem) -> tuple[int, ...]:
 
 
 def _continuous(model: Model, run: SeaRun) -> State:
-    """A run as one simulation: the state after every step."""
-    here = model if run.state is None else model.in_sea(run.state)
+    """State after every step of a run that is simulated as a whole."""
+    run_model = model if run.state is None else model.in_sea(run.state)
     start = State(equilibrium(model), jnp.zeros(6), model.rest().memory) if run.start is None else run.start
-    return states(here, run.sea, start, run.times[0], run.step, run.steps)
+    return states(run_model, run.sea, start, run.times[0], run.step, run.steps)

@@ -24,9 +24,10 @@ NEWTON_STEPS = 3  # steps of Newton's method, where sensors track another point
 
 
 class OffsetProblem(AbstractGroupedResidual):
-    """Means of static tests in which an unknown force holds one motion where it was measured; the others follow from balance.
+    """Mean offsets of static tests in which an unknown force holds one motion.
 
-    A residual is in shares of the held motion, an angle counting as the length (m) times it.
+    The held motion is where it was measured; the others follow from balance. A residual is a share of the held motion. An
+    angle counts as the platform's characteristic length (m) times it.
     """
 
     model: Model
@@ -39,19 +40,19 @@ class OffsetProblem(AbstractGroupedResidual):
     from_rest: bool = eqx.field(static=True)
 
     def readings(self, x: Float[Array, " p"]) -> Float[Array, "s 6"]:
-        """What the sensors read in every test (m, rad), from the position measured as zero."""
+        """Simulated readings in every test (m, rad), from the position measured as zero."""
         model = self.space.model(self.model, x)
         base = equilibrium(model) if self.from_rest else jnp.zeros(6)
 
-        def reading(dof: int, at: Float[Array, ""]) -> Float[Array, "6"]:
-            return model.seen(held_at(model, dof, at)) - model.seen(base)
+        def reading(dof: int, position: Float[Array, ""]) -> Float[Array, "6"]:
+            return model.seen(held_at(model, dof, position)) - model.seen(base)
 
         def held(dof: int, measured: Float[Array, ""]) -> Float[Array, ""]:
-            """Where the motion of the platform is held for the tracked point to read what was measured (Newton)."""
+            """Held motion of the platform with which the tracked point reads the measured value (Newton)."""
 
-            def corrected(_: int, at: Float[Array, ""]) -> Float[Array, ""]:
-                value, slope = jax.jvp(lambda at: reading(dof, at)[dof], (at,), (jnp.ones_like(at),))
-                return at + (measured - value) / slope
+            def corrected(_: int, position: Float[Array, ""]) -> Float[Array, ""]:
+                value, slope = jax.jvp(lambda position: reading(dof, position)[dof], (position,), (jnp.ones_like(position),))
+                return position + (measured - value) / slope
 
             return jax.lax.fori_loop(0, NEWTON_STEPS if model.senses else 0, corrected, measured + base[dof])
 
@@ -63,7 +64,7 @@ class OffsetProblem(AbstractGroupedResidual):
 
 
 def set_up_offsets(model: Model, records: Sequence[Record], space: ParameterSpace, from_rest: bool) -> OffsetProblem:
-    """Static tests with a `degree_of_freedom`, which is the motion that was held."""
+    """Set up static tests with a `degree_of_freedom`, which is the motion that was held."""
     length = characteristic_length(model)
     lengths = np.array([1.0, 1.0, 1.0, length, length, length])
     shape = (len(records), 6)
@@ -94,7 +95,7 @@ class PeriodProblem(AbstractGroupedResidual):
     dofs: tuple[int, ...] = eqx.field(static=True)
 
     def periods(self, x: Float[Array, " p"]) -> Float[Array, " n"]:
-        """(s)"""
+        """Natural periods (s)."""
         model = self.space.model(self.model, x)
         return jnp.stack([natural_period(model, dof) for dof in self.dofs])
 
@@ -105,7 +106,7 @@ class PeriodProblem(AbstractGroupedResidual):
 def natural_period(model: Model, dof: int) -> Float[Array, ""]:
     """Natural period (s) of a motion as `natural_modes(model).of`, differentiable.
 
-    T = 2 pi (l M r / l K r)^0.5, with l and r the left and right eigenvectors of M^-1 K, whose own change is of second order
+    T = 2 pi (l M r / l K r)^0.5, with l and r the left and right eigenvectors of M^-1 K. Their own change is of second order
     in T. They come from the symmetric part of K, and by two inverse iterations from K itself.
 
     Args:
@@ -129,19 +130,19 @@ def natural_period(model: Model, dof: int) -> Float[Array, ""]:
     whole = scaled(k)
     square, vectors = jnp.linalg.eigh(0.5 * (whole + whole.T))
     share = strain_energy(k, jax.scipy.linalg.solve_triangular(half.T, vectors, lower=False))
-    mine = (share[dof] > MODE_SHARE * share.max(axis=0)) & (square > 1e-10 * jnp.abs(square).max())
-    at = jnp.argmin(jnp.where(mine, square, jnp.inf))
-    right = left = vectors[:, at]
-    near = whole - square[at] * (1 + EIGENVALUE_SHIFT) * jnp.eye(6)
+    candidates = (share[dof] > MODE_SHARE * share.max(axis=0)) & (square > 1e-10 * jnp.abs(square).max())
+    mode = jnp.argmin(jnp.where(candidates, square, jnp.inf))
+    right = left = vectors[:, mode]
+    near = whole - square[mode] * (1 + EIGENVALUE_SHIFT) * jnp.eye(6)
     for _ in range(2):
         right, left = (x / jnp.linalg.norm(x) for x in (jnp.linalg.solve(near, right), jnp.linalg.solve(near.T, left)))
     right, left = (jax.scipy.linalg.solve_triangular(half.T, x, lower=False) for x in (right, left))
     period = 2 * jnp.pi * jnp.sqrt((left @ mass @ right) / (left @ stiffness @ right))
-    return jnp.where(mine.any(), period, jnp.nan)
+    return jnp.where(candidates.any(), period, jnp.nan)
 
 
 def set_up_periods(model: Model, stated: Mapping[Any, Period], space: ParameterSpace, scale: float) -> PeriodProblem:
-    """Periods by motion, at the scale of the files."""
-    values = jnp.array([one.value * scale**0.5 for one in stated.values()])
-    deviations = jnp.array([one.standard_deviation / one.value for one in stated.values()])
+    """Set up periods that are stated by motion, at the scale of the files."""
+    values = jnp.array([period.value * scale**0.5 for period in stated.values()])
+    deviations = jnp.array([period.standard_deviation / period.value for period in stated.values()])
     return PeriodProblem(model, space, None, values, deviations, tuple(DOFS.index(dof) for dof in stated))

@@ -50,7 +50,7 @@ class Options:
 
 
 def options_of(campaign: Campaign) -> Options:
-    """Default options of a campaign's seas where a command says nothing: its band, and waves as its `records` state."""
+    """Default options of a campaign's seas: its band of frequencies, and waves as its `records` state."""
     manifest, stated = campaign.manifest, campaign.manifest.records
     low, cutoff = wave_band(manifest, campaign.model, campaign.records)
     highest = None if stated.highest_difference is None else stated.highest_difference / manifest.scale**0.5
@@ -60,7 +60,7 @@ def options_of(campaign: Campaign) -> Options:
 
 
 def non_default_options(options: Options, asked: Collection[str] = (), usual: Options = Options()) -> str:
-    """Options of seas that differ from the `usual` ones, in words; those `asked` for are left aside."""
+    """Options of seas that differ from the `usual` ones, in words, except those in `asked`."""
     words = []
     of_second = {
         "kinds": f"bound waves at {' and '.join(f'{kind}s' for kind in options.kinds)} of frequencies only",

@@ -82,12 +82,12 @@ def apply_calibration(path: str | PathLike[str], model: Model, platform: str, ev
         InputError: If the file is no calibration, or has values that the model lacks or that are out of range.
     """
     saved = read_saved(path)
-    declared = model if saved.strips is None else saved.strips.applied_to(model)
+    with_strips = model if saved.strips is None else saved.strips.applied_to(model)
     # without drag there is no speed of it
-    strips = saved.strips if StripConventions.of(declared) != StripConventions.of(model) else None
-    model = with_calibrated_loads(saved, declared, path)
-    own = everything or not saved.platform or saved.platform == platform
-    values = {k: v for k, v in saved.values().items() if own or not k.startswith(CAMPAIGN_PARAMETERS)}
+    strips = saved.strips if StripConventions.of(with_strips) != StripConventions.of(model) else None
+    model = with_calibrated_loads(saved, with_strips, path)
+    use_all = everything or not saved.platform or saved.platform == platform
+    values = {k: v for k, v in saved.values().items() if use_all or not k.startswith(CAMPAIGN_PARAMETERS)}
     if not saved.values():
         raise file_error(Path(path), "at least one calibrated parameter", "none", f"{saved.key}.parameters")
     if unknown := [label for label in values if label not in model.values]:
@@ -110,15 +110,17 @@ def apply_calibration(path: str | PathLike[str], model: Model, platform: str, ev
 def unknown_values_error(
     saved: CalibrationFile, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]
 ) -> InputError:
-    """The error of calibrated values that a model has no place for."""
+    """Error for calibrated values that a model does not have."""
     expected = f"parameters of {platform} ({', '.join(sorted(model.values)) or 'it has none'})"
-    found, hint = ", ".join(map(shown, unknown)), model.shared_hint(unknown[0])
-    return file_error(Path(path), expected, found, f"{saved.key}.parameters", hint or suggest(unknown[0], model.values))
+    names, hint = ", ".join(map(shown, unknown)), model.shared_hint(unknown[0])
+    return file_error(Path(path), expected, names, f"{saved.key}.parameters", hint or suggest(unknown[0], model.values))
 
 
 def with_calibrated_loads(saved: CalibrationFile, model: Model, path: str | PathLike[str]) -> Model:
-    """The model with what calibrated values need beyond what is declared: laws of drag and over the sea state, and the effects
-    that a diagnosis found, at their neutral values."""
+    """Add to a model the loads that calibrated values need and its platform file lacks, at neutral values.
+
+    These are laws of drag, laws over the sea state, and effects that a diagnosis found.
+    """
     model = _with_laws(saved, _with_drag(saved, model, path), path)
     added = [label for label in saved.values() if label not in model.values]
     if saved.augmented is None or not added:
@@ -131,27 +133,31 @@ def with_calibrated_loads(saved: CalibrationFile, model: Model, path: str | Path
         groups = [label for label in model.values if label.startswith("wave_drift_damping.") and label.endswith(".steady")]
         return model.with_values({label: 0.0 for label in groups if label not in saved.values()})
     except (KeyError, ValueError) as error:
-        said = str(error.args[0] if error.args else error)
+        message = str(error.args[0] if error.args else error)
         expected = "parameters that the platform declares, or of effects that this version knows"
-        raise file_error(Path(path), expected, said, "augmented.parameters") from None
+        raise file_error(Path(path), expected, message, "augmented.parameters") from None
 
 
 def _with_drag(saved: CalibrationFile, model: Model, path: str | PathLike[str]) -> Model:
-    """The model with the drag laws that were calibrated. Raises InputError where it declares others, or has no such drag."""
-    plain, there, laws = plain_drag(model), drag_laws_of(model), saved.best.drag_laws
+    """Replace plain drag of a model by the drag laws that were calibrated.
+
+    Raises:
+        InputError: The platform has other laws, or no such drag.
+    """
+    plain, model_laws, laws = plain_drag(model), drag_laws_of(model), saved.best.drag_laws
     where = f"{saved.key}.drag_laws"
     for label, law in laws.items():
-        if label not in plain and label not in there:
-            known = [*plain, *there]
-            expected = f"drag coefficients ({', '.join(known) or 'there are none'})"
-            hint = model.shared_hint(label) or suggest(label, known)
+        if label not in plain and label not in model_laws:
+            coefficients = [*plain, *model_laws]
+            expected = f"drag coefficients ({', '.join(coefficients) or 'there are none'})"
+            hint = model.shared_hint(label) or suggest(label, coefficients)
             raise file_error(Path(path), expected, repr(label), where, hint)
-        if label in there and not _same_law(there[label], law):
-            expected = f"the law that the platform declares ({_law_in_words(there[label])})"
+        if label in model_laws and not _same_law(model_laws[label], law):
+            expected = f"the law that the platform declares ({_law_in_words(model_laws[label])})"
             raise file_error(Path(path), expected, _law_in_words(law), f"{where}.{label}")
     for label in saved.values():
-        if label in there and label not in laws and not _is_neutral(there[label]):
-            expected = f"the law that the platform declares ({_law_in_words(there[label])})"
+        if label in model_laws and label not in laws and not _is_neutral(model_laws[label]):
+            expected = f"the law that the platform declares ({_law_in_words(model_laws[label])})"
             raise file_error(Path(path), expected, "plain drag", f"{where}.{label}", "A coefficient goes with its law.")
     return with_drag_laws(model, {label: law for label, law in laws.items() if label in plain})
 
@@ -163,13 +169,13 @@ def _is_neutral(law: DragLaw) -> bool:
     return not (law.exponent if isinstance(law, KeuleganCarpenter) else getattr(law, "suction", 0))
 
 
-def _same_law(one: DragLaw, other: DragLaw) -> bool:
-    """Whether laws differ in nothing but parameters, which are the calibration's."""
+def _same_law(first: DragLaw, second: DragLaw) -> bool:
+    """Whether laws differ in nothing but calibrated parameters."""
 
     def constants(law: DragLaw) -> dict[str, Any]:
         return law.model_dump(include={"law", "reference", "window"})
 
-    return constants(one) == constants(other)
+    return constants(first) == constants(second)
 
 
 def _law_in_words(law: DragLaw) -> str:
@@ -182,17 +188,17 @@ def _reference(saved: CalibrationFile) -> SeaState | None:
 
 
 def _with_laws(saved: CalibrationFile, model: Model, path: str | PathLike[str]) -> Model:
-    """The model with the laws over the sea state that the calibrated values have exponents of."""
-    known = {exponent_label(label, over): (label, over) for label in model.values for over in EXPONENT_BASES}
-    labels = [label for label in saved.values() if label in known]
+    """Add to a model the laws over the sea state whose exponents were calibrated."""
+    exponents = {exponent_label(label, over): (label, over) for label in model.values for over in EXPONENT_BASES}
+    labels = [label for label in saved.values() if label in exponents]
     if not labels:
         return model
     reference = _reference(saved)
     if reference is None:
-        where, found = f"{saved.key}.sea_state_reference", "nothing"
-        raise file_error(Path(path), f"the sea state that {labels[0]} counts from", found, where)
+        where, stated = f"{saved.key}.sea_state_reference", "nothing"
+        raise file_error(Path(path), f"the sea state that {labels[0]} counts from", stated, where)
     try:
-        loads = with_exponents(model.loads, {known[label]: 0.0 for label in labels}, reference)
+        loads = with_exponents(model.loads, {exponents[label]: 0.0 for label in labels}, reference)
         return replace(model, loads=loads)
     except ValueError as error:
         where = f"{saved.key}.sea_state_reference"

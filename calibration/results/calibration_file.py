@@ -47,7 +47,13 @@ class Parameter(ResultModel):
 
 
 class MotionError(ResultModel):
-    """RMSE of a simulated motion, in `unit` (m or deg), and over the standard deviation of the measured motion."""
+    """RMSE of a simulated motion.
+
+    Attributes:
+        rmse: RMSE, in `unit`.
+        unit: m or deg.
+        relative: RMSE over the standard deviation of the measured motion.
+    """
 
     rmse: Number
     unit: str
@@ -135,7 +141,14 @@ class DampingTerm(ResultModel):
 
 
 class LinearQuadraticDamping(ResultModel):
-    """Classical analysis of a decay: period (s), p (1/s), q (1/`unit`). See `calibration.decay_analysis.linear_quadratic`."""
+    """Classical analysis of a decay. See `calibration.decay_analysis.linear_quadratic`.
+
+    Attributes:
+        period: Period (s).
+        unit: m or rad.
+        linear: p (1/s).
+        quadratic: q (1/`unit`).
+    """
 
     period: Number
     unit: str
@@ -186,12 +199,12 @@ class SeaOptions(ResultModel):
         return self
 
     def options(self) -> Options:
-        """The same, as calibrations take it."""
+        """The same options, as calibrations take them."""
         return Options(**self.model_dump())
 
 
 class CalibrationFile(ResultModel):
-    """Content of calibration.json; of a diagnosis.json, what both files have.
+    """Content of calibration.json, and the part of diagnosis.json that both files have.
 
     Attributes:
         campaign: Name of the campaign.
@@ -219,36 +232,39 @@ class CalibrationFile(ResultModel):
 
     @property
     def best(self) -> FittedModel:
-        """The model to simulate with: what was missing is in it, where it was looked for."""
+        """Model to simulate with: the augmented model, or the baseline where there is none."""
         return self.augmented or self.baseline
 
     @property
     def key(self) -> str:
-        """Where that model stands in the file."""
+        """Key of the `best` model in the file."""
         return "baseline" if self.augmented is None else "augmented"
 
     def values(self) -> dict[str, float]:
-        """Its calibrated values by label."""
-        return {label: one.value for label, one in self.best.parameters.items()}
+        """Calibrated values of the `best` model, by label."""
+        return {label: parameter.value for label, parameter in self.best.parameters.items()}
 
     def bands(self) -> dict[str, dict[str, dict[str, tuple[float | None, float]]]]:
         """Errors of energy of the baseline before and after the calibration, by test, motion and band."""
-        found = {}
+        errors = {}
         for id, row in self.baseline.error.items():
             before = self.tests[id].bands_before if id in self.tests else {}
-            found[id] = {
+            errors[id] = {
                 channel: {band: (before.get(channel, {}).get(band), value) for band, value in bands.items()}
                 for channel, bands in row.bands.items()
             }
-        return found
+        return errors
 
 
 S = TypeVar("S", bound=ResultModel)
 
 
 def read_saved(path: str | PathLike[str]) -> CalibrationFile:
-    """The result in a calibration.json or diagnosis.json, or in the folder that has one. Raises InputError with all that is
-    wrong."""
+    """Read a calibration.json or diagnosis.json, or the one in a folder.
+
+    Raises:
+        InputError: The file cannot be read or is invalid; the error lists all faults.
+    """
     return read_as(CalibrationFile, path)
 
 
@@ -262,17 +278,19 @@ def file_of(path: str | PathLike[str]) -> Path:
 
 
 def read_as(kind: type[S], path: str | PathLike[str]) -> S:
-    """`read_saved`, as what holds more of the file than the calibrated models."""
+    """Read a result file as a given model of its content; see `read_saved`."""
     path = file_of(path)
     try:
         data = json.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
-        found = "no such file" if path.suffix else "no such folder"
-        raise file_error(path, f"a {RESULT_FILE}, as `jaxhydro calibrate` writes it", found, hint=suggest_path(path)) from None
+        missing = "no such file" if path.suffix else "no such folder"
+        raise file_error(
+            path, f"a {RESULT_FILE}, as `jaxhydro calibrate` writes it", missing, hint=suggest_path(path)
+        ) from None
     except (json.JSONDecodeError, RecursionError) as error:
-        place = f"line {error.lineno}, column {error.colno}" if isinstance(error, json.JSONDecodeError) else ""
-        found = f"a mistake in it ({getattr(error, 'msg', 'lists nested too deeply')})"
-        raise file_error(path, "valid JSON, as jaxhydro writes it", found, place) from None
+        position = f"line {error.lineno}, column {error.colno}" if isinstance(error, json.JSONDecodeError) else ""
+        mistake = f"a mistake in it ({getattr(error, 'msg', 'lists nested too deeply')})"
+        raise file_error(path, "valid JSON, as jaxhydro writes it", mistake, position) from None
     except UnicodeDecodeError:
         raise file_error(path, "text in UTF-8", "other bytes") from None
     except (OSError, ValueError) as error:
@@ -288,5 +306,5 @@ def read_values(path: str | PathLike[str]) -> dict[str, float]:
 
 
 def file_error(path: Path, expected: str, found: str, where: str = "", hint: str = "") -> InputError:
-    """The error of one thing in a written result."""
+    """Error for one fault in a written result."""
     return InputError(str(path), [Problem(where, expected, found, hint)])

@@ -23,7 +23,10 @@ class Evidence(ResultModel):
 
 
 class PlausibleSizeRange(ResultModel):
-    """Sizes (SI) that a parameter can plausibly have. See `calibration.discovery.reported_effects.PlausibleRange`."""
+    """Sizes (SI) that a parameter can plausibly have.
+
+    See `calibration.discovery.reported_effects.PlausibleRange`.
+    """
 
     lower: Number
     upper: Number
@@ -57,7 +60,13 @@ class RejectedEffect(ResultModel):
 
 
 class ForceRelation(ResultModel):
-    """Relation of a latent force to a motion or the wave: coherence, phase by which the force leads (rad), correlation."""
+    """Relation of a latent force to a motion or the wave.
+
+    Attributes:
+        coherence: Coherence.
+        phase: Phase by which the force leads (rad).
+        correlation: Correlation.
+    """
 
     coherence: Number | None = None
     phase: Number | None = None
@@ -93,7 +102,9 @@ class ForceLaw(ResultModel):
 
 
 class SavedLatentForce(ResultModel):
-    """Force that would make the model follow the records, in one motion; SI. Dictionaries are by kind of test.
+    """Force in one motion that would make the model follow the records; SI.
+
+    Dictionaries are by kind of test.
 
     Attributes:
         degree_of_freedom: The motion.
@@ -117,7 +128,13 @@ class SavedLatentForce(ResultModel):
 
 
 class Unexplained(ResultModel):
-    """What is left: its fraction of the squared error, a description, and the forces that would explain it."""
+    """Error that the model with the effects found leaves.
+
+    Attributes:
+        share: Its fraction of the squared error.
+        signature: Description.
+        forces: Forces that would explain it.
+    """
 
     share: Number
     signature: str
@@ -193,7 +210,7 @@ class Anatomy(ResultModel):
 
 
 class PredictedMotion(ResultModel):
-    """Predicted motion of a held-out test, in `unit` (m or deg), and how many samples its band holds.
+    """Predicted motion of a held-out test, in `unit` (m or deg), and the samples within its band.
 
     The band itself is in simulated.nc.
 
@@ -245,10 +262,10 @@ class DiagnosisFile(CalibrationFile):
 
     @property
     def converged(self) -> bool:
-        """Whether both fits did."""
+        """Whether both fits converged."""
         return self.baseline.converged and self.augmented.converged
 
 
 def read_diagnosis(path: str | PathLike[str]) -> DiagnosisFile:
-    """A diagnosis.json, or that of a folder. Raises InputError with all that is wrong."""
+    """Read a diagnosis.json, or that of a folder. Raises InputError, which lists all faults."""
     return read_as(DiagnosisFile, path)

@@ -11,14 +11,14 @@ COMPARED = {
 }
 
 
-def describe_refusal(one: Refusal) -> str:
+def describe_refusal(refusal: Refusal) -> str:
     """Reason why an effect is not in the model, in words."""
-    values, where = one.values, COMPARED.get(one.compared, "all tests")
-    match one.kind:
+    values, where = refusal.values, COMPARED.get(refusal.compared, "all tests")
+    match refusal.kind:
         case RefusalKind.IMPOSSIBLE_VALUE:
-            return f"{one.name} comes out as {values[0]:.3g}, which physics does not allow"
+            return f"{refusal.name} comes out as {values[0]:.3g}, which physics does not allow"
         case RefusalKind.LITTLE_BIC_GAIN:
-            told = one.compared == ComparedData.HELD_OUT
+            told = refusal.compared == ComparedData.HELD_OUT
             asked = f"{values[1]:.0f} are asked" + ("" if told else " where nothing held out can tell")
             return f"it gains too little in the fitted tests (BIC {values[0]:+.0f}, {asked})"
         case RefusalKind.HELD_OUT_ERROR:
@@ -37,14 +37,15 @@ def describe_refusal(one: Refusal) -> str:
             least = f"{100 * MIN_MOTION_SHARE:.1f} % of the motion"
             return f"no error falls by {least}, nor by {MIN_FLOOR_MULTIPLE:.0f} times what can be seen"
         case RefusalKind.WORSE_MOTION:
-            what, its = (f"{one.name} is", "J of it") if one.name else ("what moves is", "J")
-            tests = where if one.compared == ComparedData.ALL else f"the {where}"
-            return f"{what} followed worse with it ({its} in {tests}: {values[0]:.3f} without it, {values[1]:.3f} with it)"
+            subject, objective = (f"{refusal.name} is", "J of it") if refusal.name else ("what moves is", "J")
+            tests = where if refusal.compared == ComparedData.ALL else f"the {where}"
+            change = f"{values[0]:.3f} without it, {values[1]:.3f} with it"
+            return f"{subject} followed worse with it ({objective} in {tests}: {change})"
         case RefusalKind.WORSE_TEST:
-            left = f"{100 * values[1]:.1f} % of the motion is left with it, {100 * values[0]:.1f} % in the baseline"
-            return f"{one.name} is followed worse with it ({left})"
+            shares = f"{100 * values[1]:.1f} % of the motion is left with it, {100 * values[0]:.1f} % in the baseline"
+            return f"{refusal.name} is followed worse with it ({shares})"
         case RefusalKind.UNSETTLED:
             return f"not settled: {100 * values[0]:.0f} % probable at the end, but most rounds or a smaller set do without it"
         case RefusalKind.IMPROBABLE:
-            said = f"{100 * values[0]:.0f} %" if values[0] >= MIN_SHOWN_PROBABILITY else "below 1 %"
-            return f"improbable ({said})"
+            probability = f"{100 * values[0]:.0f} %" if values[0] >= MIN_SHOWN_PROBABILITY else "below 1 %"
+            return f"improbable ({probability})"

@@ -46,12 +46,16 @@ def draw(figures: Iterable[tuple[str, str, Any]], folder: Path) -> list[Figure]:
 
 def write_motion(motion: xr.Dataset, folder: Path) -> None:
     """Write the series, packed, as simulated.nc."""
-    packed = {name: {"zlib": True, "complevel": 4} for name, one in motion.data_vars.items() if one.ndim > 1 and one.size}
+    packed = {
+        name: {"zlib": True, "complevel": 4}
+        for name, variable in motion.data_vars.items()
+        if variable.ndim > 1 and variable.size
+    }
     motion.to_netcdf(folder / MOTION_FILE, engine="h5netcdf", encoding=packed)
 
 
 def outdated(folder: Path, temporary: Path, result: str = RESULT_FILE) -> Iterable[str]:
-    """What an earlier run wrote and the new one does not: its figures, by its own list, and its report."""
+    """Files that an earlier run wrote and the new one does not: the figures in its list, and its report."""
     try:
         listed = json.loads((folder / result).read_text(encoding="utf-8"))["figures"]
         names = [Path(figure["file"]).name for figure in listed]

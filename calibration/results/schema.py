@@ -25,7 +25,7 @@ DESCRIPTION = (
 def schema() -> dict[str, Any]:
     """JSON schema of all result files. The document itself is that of calibration.json and diagnosis.json."""
     models = (CalibrationFile, DiagnosisFile, ComparisonFile, UncertaintyFile, SweepResults)
-    found = models_json_schema([(model, "validation") for model in models])[1]["$defs"]
+    definitions = models_json_schema([(model, "validation") for model in models])[1]["$defs"]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "calibration.json and diagnosis.json",
@@ -33,17 +33,17 @@ def schema() -> dict[str, Any]:
         "if": {"required": ["missing"]},
         "then": {"$ref": "#/$defs/DiagnosisFile"},
         "else": {"$ref": "#/$defs/CalibrationFile"},
-        "$defs": {name: _without_titles(found[name]) for name in sorted(found)},
+        "$defs": {name: _without_titles(definitions[name]) for name in sorted(definitions)},
     }
 
 
 def _without_titles(part: Any) -> Any:
     """A schema without the titles that pydantic makes of the names, which say nothing more."""
     if isinstance(part, list):
-        return [_without_titles(one) for one in part]
+        return [_without_titles(value) for value in part]
     if not isinstance(part, dict):
         return part
-    return {key: _without_titles(one) for key, one in part.items() if not (key == "title" and isinstance(one, str))}
+    return {key: _without_titles(value) for key, value in part.items() if not (key == "title" and isinstance(value, str))}
 
 
 def text() -> str:

@@ -10,8 +10,15 @@ from jaxhydro.errors import Flag
 
 
 class StripConventions(BaseModel):
-    """`directions` of strips, `drag_speed` (one of a vector, or component by component) and whether there is a `centripetal`
-    part of their acceleration: keys of a platform file. Coefficients that were found with one way mean others with another."""
+    """Conventions of strip loads, by their keys in a platform file.
+
+    Coefficients that were found with one convention are not those of another.
+
+    Attributes:
+        directions: Axes of the strips: those of the displaced body, or those of the earth.
+        drag_speed: Whether drag goes with the speed of the velocity vector, or component by component.
+        centripetal: Whether the acceleration of the strips has a centripetal part.
+    """
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
@@ -21,7 +28,7 @@ class StripConventions(BaseModel):
 
     @classmethod
     def of(cls, model: Model) -> "StripConventions":
-        """Those of a model."""
+        """Conventions of a model."""
         coupled = all(getattr(load, "coupled", True) for load in model.loads)
         return cls.model_validate(
             {
@@ -32,7 +39,7 @@ class StripConventions(BaseModel):
         )
 
     def applied_to(self, model: Model) -> Model:
-        """The model with strips so loaded; itself where they are."""
+        """The model with these conventions; the model itself where it has them."""
         if self == StripConventions.of(model):
             return model
         coupled = self.drag_speed == "vector"

@@ -16,10 +16,11 @@ _EVEN = 1e-3  # of a step: times that differ by less are the same
 
 
 def dataset(calibration: Calibration) -> xr.Dataset:
-    """Measured and simulated series of all tests, (test, channel, time), nan where there is none; m and deg.
+    """Measured and simulated series of all tests (test, channel, time), in m and deg.
 
-    `time` counts from every test's own start (`start_time`, on its file's axis). Tests sampled alike keep their
-    samples; others are interpolated linearly to the finest sampling, which the attribute `sampling` says.
+    Values are nan where there are none. `time` counts from every test's own start (`start_time`, on its file's axis). Tests
+    sampled alike keep their samples; others are interpolated linearly to the finest sampling, which the attribute `sampling`
+    says.
     """
     tests = calibration.tests
     channels = [dof for dof in DOFS if any(series.channel == dof for test in tests for series in test.series)]

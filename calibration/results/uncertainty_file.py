@@ -38,8 +38,8 @@ class ParameterIntervals(Parameter):
 
     def ways(self) -> dict[str, Interval]:
         """The intervals beside the Laplace interval, by way."""
-        found: dict[str, Interval | None] = {way: getattr(self, way) for way in INTERVAL_METHODS}
-        return {way: ends for way, ends in found.items() if ends is not None}
+        intervals: dict[str, Interval | None] = {way: getattr(self, way) for way in INTERVAL_METHODS}
+        return {way: ends for way, ends in intervals.items() if ends is not None}
 
 
 class ProfileCurve(ResultModel):
@@ -125,16 +125,23 @@ class UncertaintyFile(ResultModel):
 
     @property
     def percent(self) -> str:
-        """The level in words."""
+        """The level as text (%)."""
         return f"{100 * self.level:.4g} %"
 
     def ways(self) -> list[str]:
         """The ways beside Laplace in which intervals of some parameter were found."""
-        return [way for way in INTERVAL_METHODS if any(way in one.ways() for one in self.parameters.values())]
+        return [way for way in INTERVAL_METHODS if any(way in parameter.ways() for parameter in self.parameters.values())]
 
 
 class IntervalSummary(NamedTuple):
-    """What the sentence on intervals says: half widths over the value, by coefficient, and coefficients without any."""
+    """Content of the sentence on intervals.
+
+    Attributes:
+        converged: Whether the fit converged.
+        level: Probability of the intervals (%), as text.
+        half_widths: Half width over the value, by coefficient.
+        undetermined: Coefficients without an interval.
+    """
 
     converged: bool
     level: str
@@ -143,12 +150,12 @@ class IntervalSummary(NamedTuple):
 
 
 def summary_of(saved: UncertaintyFile) -> IntervalSummary:
-    """The summary of the Laplace intervals."""
+    """Summary of the Laplace intervals."""
     widths = {}
-    for label, one in saved.parameters.items():
-        low, high = one.laplace
-        if one.identifiable and not one.at_bound and low is not None and high is not None and one.value:
-            widths[label] = 0.5 * (high - low) / abs(one.value)
+    for label, parameter in saved.parameters.items():
+        low, high = parameter.laplace
+        if parameter.identifiable and not parameter.at_bound and low is not None and high is not None and parameter.value:
+            widths[label] = 0.5 * (high - low) / abs(parameter.value)
     rest = tuple(label for label in saved.parameters if label not in widths)
     return IntervalSummary(saved.converged, saved.percent, widths, rest)
 
@@ -160,33 +167,35 @@ def interval_sentence(summary: IntervalSummary) -> str:
     """
     widths, rest = summary.half_widths, summary.undetermined
     total = len(widths) + len(rest)
-    said = "" if summary.converged else "The fit did not converge. "
+    sentence = "" if summary.converged else "The fit did not converge. "
     if not widths:
-        return f"{said}None of {counted(total, 'coefficient')} has a {summary.level} interval that says anything."
+        return f"{sentence}None of {counted(total, 'coefficient')} has a {summary.level} interval that says anything."
     many = f"All {total} coefficients" if not rest and total > 1 else f"{len(widths)} of {counted(total, 'coefficient')}"
-    said += f"{many} known to {percent_span(list(widths.values()))} ({summary.level} intervals)"
-    said += f", the least well {max(widths, key=lambda label: widths[label])}" if len(widths) > 1 else ""
-    return f"{said}; {UNDETERMINED}: {listed(rest)}." if rest else f"{said}."
+    sentence += f"{many} known to {percent_span(list(widths.values()))} ({summary.level} intervals)"
+    sentence += f", the least well {max(widths, key=lambda label: widths[label])}" if len(widths) > 1 else ""
+    return f"{sentence}; {UNDETERMINED}: {listed(rest)}." if rest else f"{sentence}."
 
 
 def intervals_table(saved: UncertaintyFile) -> Rows:
     """Value, Laplace interval, and how much too small it would be as if errors were white."""
     rows = []
-    for label, one in saved.parameters.items():
-        low, high = one.laplace
-        value = number(one.value) if low is None or high is None else to_width(one.value, high - low)
-        value = value if one.identifiable else bracketed(one.value)
-        excess = "–" if one.white_too_small_by is None else f"{number(one.white_too_small_by, 2)} times"
-        flag = "at its bound" if one.at_bound else "" if one.identifiable else UNDETERMINED
-        rows.append((label, value, interval(low, high), readable_unit(one.unit), excess, flag))
+    for label, parameter in saved.parameters.items():
+        low, high = parameter.laplace
+        value = number(parameter.value) if low is None or high is None else to_width(parameter.value, high - low)
+        value = value if parameter.identifiable else bracketed(parameter.value)
+        excess = "–" if parameter.white_too_small_by is None else f"{number(parameter.white_too_small_by, 2)} times"
+        flag = "at its bound" if parameter.at_bound else "" if parameter.identifiable else UNDETERMINED
+        rows.append((label, value, interval(low, high), readable_unit(parameter.unit), excess, flag))
     return ("Parameter", "Value", f"{saved.percent} interval", "Unit", "Width over white-noise width", "Remark"), rows
 
 
 def other_intervals_table(saved: UncertaintyFile) -> Rows:
     """The Laplace interval beside those found in other ways; no rows where none was asked for."""
-    there = saved.ways()
+    ways = saved.ways()
     rows = []
-    for label, one in saved.parameters.items():
-        if found := one.ways():
-            rows.append((label, interval(*one.laplace), *(interval(*found[way]) if way in found else "" for way in there)))
-    return ("Parameter", "Laplace", *(INTERVAL_METHODS[way] for way in there)), rows
+    for label, parameter in saved.parameters.items():
+        if intervals := parameter.ways():
+            rows.append(
+                (label, interval(*parameter.laplace), *(interval(*intervals[way]) if way in intervals else "" for way in ways))
+            )
+    return ("Parameter", "Laplace", *(INTERVAL_METHODS[way] for way in ways)), rows

@@ -36,17 +36,32 @@ from jaxhydro.units import for_people, unit_of
 
 
 class NotFinite(ValueError):
-    """A result that is not a number, which no file can hold: the simulation of a fitted test grew beyond all bounds."""
+    """A result that is not finite, which no file can hold.
+
+    The simulation of a fitted test grew beyond all bounds.
+    """
 
 
 def write_calibration(
     calibration: Calibration, folder: str | PathLike[str], figures: bool = True, truth: Mapping[str, float] | None = None
 ) -> Path:
-    """Write all results into `folder` (made where absent); gives the folder.
+    """Write all results of a calibration into a folder.
 
-    The results of an earlier calibration there are replaced when the new ones are complete, its report page taken away;
-    other files stay. Angles are in degrees. `truth` are the coefficients that a synthetic campaign was made with: they are
-    written beside the result, for its report. Raises NotFinite, and InputError where the folder cannot be written.
+    The results of an earlier calibration there are replaced when the new ones are complete. Its report page is removed; other
+    files stay. Angles are in degrees.
+
+    Args:
+        calibration: The calibration.
+        folder: The folder, made where absent.
+        figures: Whether figures are drawn.
+        truth: Coefficients that a synthetic campaign was made with, by label. They are written for the report.
+
+    Returns:
+        The folder.
+
+    Raises:
+        NotFinite: A parameter or the objective of the fitted tests is not finite.
+        InputError: The folder cannot be written.
     """
     folder = Path(folder)
     with staged(folder, lambda temporary: outdated(folder, temporary)) as temporary:
@@ -88,7 +103,10 @@ def fitted_model(calibration: Calibration) -> FittedModel:
         raise NotFinite("the simulated motion of a fitted test is not finite")
     reference = reference_of(calibration.model.loads)
     return FittedModel(
-        parameters={label: parameter(one, start=finite_or_null(one.start)) for label, one in calibration.parameters.items()},
+        parameters={
+            label: parameter(estimate, start=finite_or_null(estimate.start))
+            for label, estimate in calibration.parameters.items()
+        },
         error={test.id: _errors(test) for test in calibration.tests},
         objective=Objective(fit=fit, holdout=finite_or_null(calibration.objective("holdout"))),
         converged=bool(calibration.converged),
@@ -104,23 +122,23 @@ def fitted_model(calibration: Calibration) -> FittedModel:
     )
 
 
-def parameter(one: Estimate, **more: Any) -> Parameter:
+def parameter(estimate: Estimate, **more: Any) -> Parameter:
     """A calibrated parameter as result files have it, with more of its fields. Raises NotFinite."""
-    if not math.isfinite(one.value):
-        raise NotFinite(f"the parameter {one.label} is not finite")
+    if not math.isfinite(estimate.value):
+        raise NotFinite(f"the parameter {estimate.label} is not finite")
     return Parameter(
-        value=float(one.value),
-        standard_deviation=finite_or_null(one.standard_deviation),
-        unit=one.unit,
-        at_bound=one.at_bound,
-        identifiable=one.identifiable,
-        meaning=one.meaning,
+        value=float(estimate.value),
+        standard_deviation=finite_or_null(estimate.standard_deviation),
+        unit=estimate.unit,
+        at_bound=estimate.at_bound,
+        identifiable=estimate.identifiable,
+        meaning=estimate.meaning,
         **more,
     )
 
 
 def drag_laws(model: Model) -> dict[str, dict[str, Any]]:
-    """Coefficient -> its law, as a platform file has it, for those that are not of plain drag."""
+    """Drag laws other than plain drag, by coefficient, as a platform file has them."""
     return {label: law.model_dump(exclude_none=True) for label, law in drag_laws_of(model).items()}
 
 
@@ -137,7 +155,7 @@ def _errors(test: TestFit) -> TestErrors:
 def _bands(test: TestFit, name: str) -> dict[str, dict[str, float]]:
     """Finite errors of energy of one model, `after` or `before`."""
     each = {
-        channel: {band: value for band, one in row.items() if math.isfinite(value := float(getattr(one, name)))}
+        channel: {band: value for band, error in row.items() if math.isfinite(value := float(getattr(error, name)))}
         for channel, row in test.bands.items()
     }
     return {channel: row for channel, row in each.items() if row}

@@ -37,12 +37,12 @@ from jaxhydro.units import for_people, unit_of
 
 
 def write_comparison(
-    found: Comparison, content: ComparisonFile, folder: str | PathLike[str], figures: bool = True
+    comparison: Comparison, content: ComparisonFile, folder: str | PathLike[str], figures: bool = True
 ) -> ComparisonFile:
     """Write all results; they replace those of an earlier comparison.
 
     Args:
-        found: The comparison.
+        comparison: The comparison.
         content: Content of comparison.json without figures.
         folder: Folder of the results, made where absent.
         figures: Whether figures are drawn.
@@ -59,15 +59,15 @@ def write_comparison(
         if figures:
             from calibration.plots import comparison_figures as seas_plot
 
-            drawn = draw(seas_plot.figures(found.tests), temporary)
+            drawn = draw(seas_plot.figures(comparison.tests), temporary)
         content = content.model_copy(update={"figures": drawn})
         content.write(temporary / COMPARISON_FILE)
-        write_motion(dataset(found.tests, content.campaign).assign(hull_variable(found.hull)), temporary)
+        write_motion(dataset(comparison.tests, content.campaign).assign(hull_variable(comparison.hull)), temporary)
     return content
 
 
 def document(
-    found: Comparison,
+    comparison: Comparison,
     options: Options,
     *,
     campaign: str,
@@ -78,7 +78,7 @@ def document(
     """Content of comparison.json without figures.
 
     Args:
-        found: The comparison.
+        comparison: The comparison.
         options: Options of the waves.
         campaign: Name of the campaign.
         platform: Name of the platform.
@@ -106,19 +106,19 @@ def document(
             rounds=made.rounds,
             variance_in_band=made.inside,
         )
-        for run, made in found.seas
+        for run, made in comparison.seas
     ]
     return ComparisonFile(
         campaign=campaign,
         platform=platform,
         calibration=calibration,
         jaxhydro=jaxhydro.__version__,
-        options=SimulatedOptions(**dataclasses.asdict(options), step=found.step, spectra=WELCH),
+        options=SimulatedOptions(**dataclasses.asdict(options), step=comparison.step, spectra=WELCH),
         coefficients=coefficients,
         seas=seas,
-        error={test.fit.id: _errors(test) for test in found.tests},
-        tests={test.fit.id: _about(test) for test in found.tests},
-        warnings=list(found.notes),
+        error={test.fit.id: _errors(test) for test in comparison.tests},
+        tests={test.fit.id: _about(test) for test in comparison.tests},
+        warnings=list(comparison.notes),
     )
 
 
@@ -134,7 +134,7 @@ def _errors(test: SeaTest) -> TestErrors:
 
 
 def _about(test: SeaTest) -> SeaTestResults:
-    """What the sea was, and what errors are made of, in m and deg."""
+    """Sea of a test, and statistics of its channels in m and deg."""
     both, worth = channels(test), {"wave", *moving(test)}
     statistics = {
         name: ChannelStatistics(
@@ -170,9 +170,10 @@ def _about(test: SeaTest) -> SeaTestResults:
 
 
 def dataset(tests: tuple[SeaTest, ...], campaign: str) -> xr.Dataset:
-    """Measured and simulated motions (test, channel, time) and waves (test, time), nan where there is none; m and deg.
+    """Measured and simulated motions (test, channel, time) and waves (test, time), in m and deg.
 
-    `time` counts from where every test's comparison begins, after its transient (`start_time`, on its file's axis).
+    Values are nan where there are none. `time` counts from where every test's comparison begins, after its transient
+    (`start_time`, on its file's axis).
     """
     names = [dof for dof in DOFS if any(s.channel == dof for test in tests for s in test.fit.series)]
     times = [test.fit.time - test.fit.time[0] for test in tests]
@@ -190,10 +191,10 @@ def dataset(tests: tuple[SeaTest, ...], campaign: str) -> xr.Dataset:
                 )
     both = {"units": "m; deg for roll, pitch and yaw"}
     words = {"measured": "measured motion of the reference point, still water at zero", "simulated": "motion of the model"}
-    at = {"measured": "measured elevation at the gauge", "simulated": "elevation of the simulated sea at the gauge"}
+    wave_words = {"measured": "measured elevation at the gauge", "simulated": "elevation of the simulated sea at the gauge"}
     data: dict[str, Any] = {
         key: (("test", "channel", "time"), motion[key], both | {"long_name": words[key]}) for key in motion
-    } | {f"wave_{key}": (("test", "time"), wave[key], {"units": "m", "long_name": at[key]}) for key in wave}
+    } | {f"wave_{key}": (("test", "time"), wave[key], {"units": "m", "long_name": wave_words[key]}) for key in wave}
     starts = np.array([float(test.fit.time[0]) for test in tests])
     coordinates: dict[str, Any] = {
         "time": ("time", axis, {"units": "s", "long_name": "time since the start of the comparison"}),

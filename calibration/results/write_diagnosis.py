@@ -45,10 +45,22 @@ PROBABILITY_DIGITS = 3
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: str | PathLike[str], figures: bool = True) -> Path:
-    """Write all results into `folder` (made where absent); gives the folder.
+    """Write all results of a diagnosis into a folder.
 
-    The results of an earlier diagnosis there are replaced when the new ones are complete, its report page taken away; other
-    files stay. Angles are in degrees. Raises NotFinite, and InputError where the folder cannot be written.
+    The results of an earlier diagnosis there are replaced when the new ones are complete. Its report page is removed; other
+    files stay. Angles are in degrees.
+
+    Args:
+        diagnosis: The diagnosis.
+        folder: The folder, made where absent.
+        figures: Whether figures are drawn.
+
+    Returns:
+        The folder.
+
+    Raises:
+        NotFinite: A parameter or the objective of the fitted tests is not finite.
+        InputError: The folder cannot be written.
     """
     folder, compared = Path(folder), paired(diagnosis)
     with staged(folder, lambda temporary: outdated(folder, temporary, DIAGNOSIS_FILE)) as temporary:
@@ -63,7 +75,9 @@ def write_diagnosis(diagnosis: Diagnosis, folder: str | PathLike[str], figures: 
 
 
 def motions(diagnosis: Diagnosis, compared: Calibration) -> xr.Dataset:
-    """Content of simulated.nc: motions measured, and simulated without and with what was found missing, in m and deg.
+    """Content of simulated.nc: motions measured, and simulated without and with the effects found.
+
+    Motions are in m and deg.
 
     Args:
         diagnosis: The diagnosis.
@@ -96,58 +110,58 @@ def document(diagnosis: Diagnosis, damping: bool = True) -> DiagnosisFile:
         baseline=outputs.fitted_model(diagnosis.baseline),
         missing=MissingEffects(
             verdict=diagnosis.verdict,
-            effects=[_effect(one) for one in diagnosis.effects],
+            effects=[_effect(effect) for effect in diagnosis.effects],
             rejected=[
                 RejectedEffect(
-                    effect=one.effect,
-                    degree_of_freedom=one.degree_of_freedom,
-                    reason=describe_refusal(one.reason),
-                    **stated(probability=_probability(one)),
+                    effect=rejected.effect,
+                    degree_of_freedom=rejected.degree_of_freedom,
+                    reason=describe_refusal(rejected.reason),
+                    **stated(probability=_probability(rejected)),
                 )
-                for one in diagnosis.rejected
+                for rejected in diagnosis.rejected
             ],
             unexplained=Unexplained(
                 share=_share(diagnosis.unexplained_share),
                 signature=diagnosis.signature,
-                **stated(forces=[_latent(one) for one in diagnosis.latent]),
+                **stated(forces=[_latent(force) for force in diagnosis.latent]),
             ),
         ),
         augmented=augmented.baseline,
         tests=augmented.tests,
-        scores=[_score(one) for one in diagnosis.scores],
+        scores=[_score(score) for score in diagnosis.scores],
         anatomy=Anatomy(
-            before=[_residual(one) for one in diagnosis.anatomy_before],
-            after=[_residual(one) for one in diagnosis.anatomy_after],
+            before=[_residual(finding) for finding in diagnosis.anatomy_before],
+            after=[_residual(finding) for finding in diagnosis.anatomy_after],
         ),
-        predictions=[_prediction(one) for one in diagnosis.predictions],
+        predictions=[_prediction(prediction) for prediction in diagnosis.predictions],
         next_test=diagnosis.next_test,
         notes=list(diagnosis.notes),
         seconds=finite_or_null(diagnosis.seconds),
     )
 
 
-def _effect(one: Effect) -> FoundEffect:
+def _effect(effect: Effect) -> FoundEffect:
     def short(label: str) -> str:  # `force` of `coulomb_friction.surge.force`
-        return label.removeprefix(f"{one.effect}.").removeprefix(f"{one.degree_of_freedom}.")
+        return label.removeprefix(f"{effect.effect}.").removeprefix(f"{effect.degree_of_freedom}.")
 
     return FoundEffect(
-        effect=one.effect,
-        degree_of_freedom=one.degree_of_freedom,
-        meaning=one.meaning,
-        source=one.source,
-        parameters={short(label): outputs.parameter(value, label=value.label) for label, value in one.parameters.items()},
-        evidence=Evidence(**_finite(asdict(one.evidence) | {"probability": _rounded(one.evidence.probability)})),
-        share_of_residual_explained=_share(one.share),
-        indistinguishable_from=list(one.indistinguishable),
-        test_that_would_tell=one.telling_test,
-        **stated(in_doubt=one.in_doubt),
-        plausible={short(label): PlausibleSizeRange(**asdict(size)) for label, size in one.plausible.items()},
+        effect=effect.effect,
+        degree_of_freedom=effect.degree_of_freedom,
+        meaning=effect.meaning,
+        source=effect.source,
+        parameters={short(label): outputs.parameter(value, label=value.label) for label, value in effect.parameters.items()},
+        evidence=Evidence(**_finite(asdict(effect.evidence) | {"probability": _rounded(effect.evidence.probability)})),
+        share_of_residual_explained=_share(effect.share),
+        indistinguishable_from=list(effect.indistinguishable),
+        test_that_would_tell=effect.telling_test,
+        **stated(in_doubt=effect.in_doubt),
+        plausible={short(label): PlausibleSizeRange(**asdict(size)) for label, size in effect.plausible.items()},
     )
 
 
-def _probability(one: Rejected) -> float | None:
+def _probability(rejected: Rejected) -> float | None:
     """Probability of an effect that is rejected for it."""
-    return _rounded(one.reason.values[0]) if one.reason.kind in PROBABILITY_KINDS else None
+    return _rounded(rejected.reason.values[0]) if rejected.reason.kind in PROBABILITY_KINDS else None
 
 
 def _rounded(probability: float) -> float:
@@ -155,18 +169,18 @@ def _rounded(probability: float) -> float:
     return round(probability, PROBABILITY_DIGITS)
 
 
-def _latent(one: LatentForce) -> SavedLatentForce:
-    law = one.law
+def _latent(force: LatentForce) -> SavedLatentForce:
+    law = force.law
     return SavedLatentForce(
-        degree_of_freedom=one.motion,
-        unit=one.unit,
-        rms=_finite(one.rms),
-        bands={kind: _finite(row) for kind, row in one.shares.items()},
+        degree_of_freedom=force.motion,
+        unit=force.unit,
+        rms=_finite(force.rms),
+        bands={kind: _finite(row) for kind, row in force.shares.items()},
         follows={
             kind: {name: ForceRelation(**_finite(asdict(relation))) for name, relation in row.items()}
-            for kind, row in one.coherence.items()
+            for kind, row in force.coherence.items()
         },
-        grows_as_power_of=_finite(one.growth),
+        grows_as_power_of=_finite(force.growth),
         law=ForceLaw(
             terms=[
                 ForceTerm(term=term.name, coefficient=finite_or_null(term.coefficient), unit=term.unit) for term in law.terms
@@ -177,7 +191,7 @@ def _latent(one: LatentForce) -> SavedLatentForce:
             v0=finite_or_null(law.v0),
             omega=finite_or_null(law.pace),
         ),
-        words=one.words,
+        words=force.words,
     )
 
 
@@ -186,36 +200,36 @@ def _finite(values: Mapping[str, float]) -> dict[str, float | None]:
 
 
 def _share(value: float) -> float:
-    """A share as JSON has it; of nothing at all (0/0) it is 0."""
+    """A share as JSON has it; 0 in place of 0/0."""
     return 0.0 if math.isnan(value) else float(np.clip(value, -1e9, 1e9))
 
 
-def _score(one: Score) -> EffectScore:
+def _score(score: Score) -> EffectScore:
     return EffectScore(
-        round=one.round,
-        effect=one.effect,
-        degree_of_freedom=one.degree_of_freedom,
-        gain=finite_or_null(one.gain),
-        parameters=one.size,
-        holdout_gain=finite_or_null(one.holdout),
-        refitted_gain=finite_or_null(one.refitted),
-        refitted_holdout_gain=finite_or_null(one.refitted_holdout),
+        round=score.round,
+        effect=score.effect,
+        degree_of_freedom=score.degree_of_freedom,
+        gain=finite_or_null(score.gain),
+        parameters=score.size,
+        holdout_gain=finite_or_null(score.holdout),
+        refitted_gain=finite_or_null(score.refitted),
+        refitted_holdout_gain=finite_or_null(score.refitted_holdout),
     )
 
 
-def _prediction(one: Prediction) -> PredictedMotion:
+def _prediction(prediction: Prediction) -> PredictedMotion:
     def shown(value: float) -> float | None:
-        return finite_or_null(float(for_people(one.channel, value)))
+        return finite_or_null(float(for_people(prediction.channel, value)))
 
     return PredictedMotion(
-        test=one.test,
-        channel=one.channel,
-        unit=unit_of(one.channel),
-        samples=len(one.half_width),
-        inside=one.inside,
-        half_width=shown(float(np.sqrt(np.mean(one.half_width**2)))),
-        parameter_error=shown(one.parameter_error),
-        model_error=shown(one.model_error),
+        test=prediction.test,
+        channel=prediction.channel,
+        unit=unit_of(prediction.channel),
+        samples=len(prediction.half_width),
+        inside=prediction.inside,
+        half_width=shown(float(np.sqrt(np.mean(prediction.half_width**2)))),
+        parameter_error=shown(prediction.parameter_error),
+        model_error=shown(prediction.model_error),
     )
 
 
@@ -223,35 +237,35 @@ def with_bands(motion: xr.Dataset, diagnosis: Diagnosis) -> xr.Dataset:
     """Motions of the tests, with half the widths of the predictions' bands beside them."""
     widths = xr.full_like(motion["simulated"], np.nan)
     times = {test.id: test.time for test in diagnosis.augmented.tests}
-    for one in diagnosis.predictions:
-        time = times[one.test]
-        half_width = for_people(one.channel, one.half_width)
-        widths.loc[{"test": one.test, "channel": one.channel}] = np.interp(
+    for prediction in diagnosis.predictions:
+        time = times[prediction.test]
+        half_width = for_people(prediction.channel, prediction.half_width)
+        widths.loc[{"test": prediction.test, "channel": prediction.channel}] = np.interp(
             motion["time"], time - time[0], half_width, left=np.nan, right=np.nan
         )
     widths.attrs["long_name"] = "half the width of the band in which 95 % of a held-out test's samples are expected"
     return motion.assign(half_width=widths)
 
 
-def _residual(one: Finding) -> Residual:
+def _residual(finding: Finding) -> Residual:
     return Residual(
-        test=one.test,
-        use=one.use,
-        channel=one.channel,
-        unit=unit_of(one.channel),
-        rms=finite_or_null(float(for_people(one.channel, one.rms))),
-        noise=finite_or_null(float(for_people(one.channel, one.noise))),
-        relative=finite_or_null(one.relative),
+        test=finding.test,
+        use=finding.use,
+        channel=finding.channel,
+        unit=unit_of(finding.channel),
+        rms=finite_or_null(float(for_people(finding.channel, finding.rms))),
+        noise=finite_or_null(float(for_people(finding.channel, finding.noise))),
+        relative=finite_or_null(finding.relative),
         bands=[
             ResidualBand(low=float(low), high=float(high), rms_over_noise=finite_or_null(ratio))
-            for low, high, ratio in one.bands
+            for low, high, ratio in finding.bands
         ],
-        words=one.words,
+        words=finding.words,
     )
 
 
 def paired(diagnosis: Diagnosis) -> Calibration:
-    """The augmented model's calibration, the baseline's motion and band errors in it as those before."""
+    """Calibration of the augmented model, with motions and band errors of the baseline as those before."""
     first = {test.id: test for test in diagnosis.baseline.tests}
     tests = tuple(_paired(first[test.id], test) if test.id in first else test for test in diagnosis.augmented.tests)
     return replace(diagnosis.augmented, tests=tests)
@@ -262,21 +276,24 @@ def _paired(before: TestFit, after: TestFit) -> TestFit:
         after,
         start=dict(_motions(before.series, after.series)),
         bands={
-            channel: {band: one._replace(before=_band(before, channel, band, one)) for band, one in row.items()}
+            channel: {band: error._replace(before=_band(before, channel, band, error)) for band, error in row.items()}
             for channel, row in after.bands.items()
         },
     )
 
 
 def _motions(before: Iterable[Series], after: Iterable[Series]) -> Iterable[tuple[str, np.ndarray]]:
-    """The baseline's motions on the sensor offsets of the augmented fit, so that residuals stay what they were."""
-    there = {series.channel: series for series in before}
+    """Motions of the baseline on the sensor offsets of the augmented fit.
+
+    Residuals stay what they were.
+    """
+    by_channel = {series.channel: series for series in before}
     for series in after:
-        other = there.get(series.channel)
-        if other is not None and len(other.simulated) == len(series.measured):
-            yield series.channel, other.simulated + (series.measured - other.measured)
+        baseline = by_channel.get(series.channel)
+        if baseline is not None and len(baseline.simulated) == len(series.measured):
+            yield series.channel, baseline.simulated + (series.measured - baseline.measured)
 
 
-def _band(before: TestFit, channel: str, band: str, one: BandError) -> float:
-    found = before.bands.get(channel, {}).get(band)
-    return one.before if found is None else found.after
+def _band(before: TestFit, channel: str, band: str, error: BandError) -> float:
+    earlier = before.bands.get(channel, {}).get(band)
+    return error.before if earlier is None else earlier.after

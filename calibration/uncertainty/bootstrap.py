@@ -1,7 +1,7 @@
 """Bootstrap of a calibration, over repeats of tests or over blocks of residuals.
 
 The draws go through one compiled program in one process, CHUNK_SIZE of them side by side in every operation. For a body without
-members that halves the time of a refit, for a hull of hundreds of strips it is even with one after the other.
+members that halves the time of a refit. For a hull of hundreds of strips it takes as long as one after the other.
 """
 
 from __future__ import annotations
@@ -132,13 +132,13 @@ def _steps(
 ) -> Unknowns:
     """One Gauss-Newton step of many draws at once, none longer than MAX_STEP."""
 
-    def one(unknowns, measured, weight):
-        here = eqx.tree_at(lambda q: q.data.measured, problem, measured)
-        info, _ = normal_equations(unknowns, LeastSquares((here,), (weight,), *prior))
+    def stepped(unknowns, measured, weight):
+        resampled = eqx.tree_at(lambda q: q.data.measured, problem, measured)
+        info, _ = normal_equations(unknowns, LeastSquares((resampled,), (weight,), *prior))
         step = clipped(info.hessian.solve(info.grad), MAX_STEP)
         return Unknowns(unknowns.shared - step.shared, unknowns.own - step.own)
 
-    return jax.vmap(one)(unknowns, measured, weight)
+    return jax.vmap(stepped)(unknowns, measured, weight)
 
 
 def bootstrap_repeats(likelihood: Likelihood, draws: int = 200, seed: int = 0, progress: Progress | None = None) -> Bootstrap:
@@ -184,17 +184,22 @@ def bootstrap_repeats(likelihood: Likelihood, draws: int = 200, seed: int = 0, p
     return _drawn(likelihood, "repeats", inputs, draws, seed, dict(groups), progress)
 
 
-def repeats(of: dict[str, str | None]) -> dict[str, tuple[str, ...]]:
-    """Ids of tests that repeat each other, by the first's, from every test's `repeat_of`. A test that is not there stands for
-    those that repeat it."""
+def repeats(repeat_of: dict[str, str | None]) -> dict[str, tuple[str, ...]]:
+    """Ids of tests that repeat each other, by the id of the first one.
+
+    An id that is not among the tests stands for the tests that repeat it.
+
+    Args:
+        repeat_of: `repeat_of` of every test, by its id.
+    """
     groups: dict[str, tuple[str, ...]] = {}
-    for id in of:
-        first, seen = id, {id}
-        while (other := of.get(first)) is not None and other not in seen:
-            first = other
-            seen.add(other)
+    for id in repeat_of:
+        first, visited = id, {id}
+        while (original := repeat_of.get(first)) is not None and original not in visited:
+            first = original
+            visited.add(original)
         # a ring has no first: the least of its ids
-        first = min(seen) if of.get(first) is not None else first
+        first = min(visited) if repeat_of.get(first) is not None else first
         groups[first] = (*groups.get(first, ()), id)
     return groups
 
@@ -204,7 +209,7 @@ def bootstrap_blocks(likelihood: Likelihood, draws: int = 200, seed: int = 0, pr
 
     A block is as long as the released motion's period or twice the residual's correlation length, and at most a third of
     the record. The channels of a record are drawn together. The fit has made residuals near the decay's frequency too
-    small: they are raised, frequency by frequency, by (1 - h)^-1/2, h the leverage there (HC2).
+    small. They are raised by (1 - h)^-1/2 at each frequency, with the leverage h there (HC2).
 
     Args:
         likelihood: Likelihood of a finished fit.
@@ -237,8 +242,8 @@ def bootstrap_blocks(likelihood: Likelihood, draws: int = 200, seed: int = 0, pr
         for i, record in enumerate(fit.decays.records):
             n, length = len(record.time), lengths[record.id][0]
             first = random.integers(0, n - length + 1, size=(count, -(-n // length)))
-            at = (first[:, :, None] + np.arange(length)).reshape(count, -1)[:, :n]
-            noise[:, i, :, :n] = np.moveaxis(raised[i][:, at], 0, 1)
+            indices = (first[:, :, None] + np.arange(length)).reshape(count, -1)[:, :n]
+            noise[:, i, :, :n] = np.moveaxis(raised[i][:, indices], 0, 1)
         present = np.asarray(fit.decays.problem.data.present)
         return (fitted - noise) * present, np.broadcast_to(weight, (count, *weight.shape))
 
@@ -247,18 +252,21 @@ def bootstrap_blocks(likelihood: Likelihood, draws: int = 200, seed: int = 0, pr
 
 
 def _raised(likelihood: Likelihood) -> np.ndarray:
-    """Residuals (r, c, t) with what the fit took from them given back, mean zero."""
+    """Residuals (r, c, t) of mean zero, raised for the share that the fit has absorbed."""
     raised = np.zeros(likelihood.residual.shape)
-    for (i, j), one in likelihood.spectra.items():
+    for (i, j), spectrum in likelihood.spectra.items():
         n = len(likelihood.fit.decays.records[i].time)
-        wave = np.fft.rfft(likelihood.residual[i, j, :n]) / np.sqrt(np.maximum(one.freedom, MIN_FREEDOM))
+        wave = np.fft.rfft(likelihood.residual[i, j, :n]) / np.sqrt(np.maximum(spectrum.freedom, MIN_FREEDOM))
         wave[0] = 0.0
         raised[i, j, :n] = np.fft.irfft(wave, n)
     return raised
 
 
 def _linear(likelihood: Likelihood, measured: np.ndarray, weight: np.ndarray) -> Unknowns:
-    """Where the draws should end by the slopes at the estimate: no simulation, and right but for what is not linear."""
+    """Unknowns of the draws by the slopes at the estimate.
+
+    This needs no simulation, and is exact for a model that is linear in its unknowns.
+    """
     fit, slope = likelihood.fit, likelihood.slope
     data, p = fit.decays.problem.data, len(fit.decays.problem.space.free)
     residual = likelihood.residual + (np.asarray(data.measured) - measured) * np.asarray(data.present)
@@ -282,7 +290,7 @@ def _drawn(
     groups: dict[str, tuple[str, ...] | float],
     progress: Progress | None,
 ) -> Bootstrap:
-    """All draws refitted, CHUNK_SIZE at once."""
+    """Refit all draws, CHUNK_SIZE at once."""
     fit = likelihood.fit
     prior = (jnp.asarray(fit.mean), jnp.asarray(fit.ridge))
     scale, coordinates, unsettled = likelihood.deviation(), [], 0

@@ -49,21 +49,21 @@ class ExpectedGain:
     untouched: tuple[str, ...]
 
     def sentence(self) -> str:
-        """In words, with the three parameters that gain most."""
+        """Sentence on the test, with the three parameters that gain most."""
         best = [i for i in np.argsort(self.after / self.before)[:3] if self.after[i] < 0.9 * self.before[i]]
         pairs = [f"{self.parameters.labels[i]} from {percent(self.before[i])} to {percent(self.after[i])}" for i in best]
-        left = f"{len(self.weak)} weak direction{'' if len(self.weak) == 1 else 's'} left"
-        return f"{self.name}: {listed(pairs) or 'nothing much better known'}; {left}; log-volume {-self.gain:+.2f}"
+        remaining = f"{len(self.weak)} weak direction{'' if len(self.weak) == 1 else 's'} left"
+        return f"{self.name}: {listed(pairs) or 'nothing much better known'}; {remaining}; log-volume {-self.gain:+.2f}"
 
 
-def expected_information(known: Identifiability, candidate: np.ndarray, name: str = "a further test") -> ExpectedGain:
+def expected_information(current: Identifiability, candidate: np.ndarray, name: str = "a further test") -> ExpectedGain:
     """Compute what a further test would add to a calibration.
 
     The gain is 0.5 ln det(1 + C F), C the posterior covariance and F the test's information. It is finite also where the
     records leave a direction open.
 
     Args:
-        known: What the records determine so far.
+        current: What the records determine so far.
         candidate: (p, p) information of the test, its own unknowns eliminated.
         name: Name of the test.
 
@@ -73,30 +73,30 @@ def expected_information(known: Identifiability, candidate: np.ndarray, name: st
     References:
         Chaloner and Verdinelli 1995, Statistical Science 10, 273-304 (Bayesian D-optimality).
     """
-    candidate = submatrix(candidate, [i for i, label in enumerate(known.parameters.labels) if label not in known.at_bound])
-    values, vectors = np.linalg.eigh(known.covariance)
+    candidate = submatrix(candidate, [i for i, label in enumerate(current.parameters.labels) if label not in current.at_bound])
+    values, vectors = np.linalg.eigh(current.covariance)
     root = vectors * np.sqrt(np.maximum(values, 0)) @ vectors.T
     ratio = np.eye(len(root)) + root @ candidate @ root
     after = root @ np.linalg.solve(ratio, root)
-    together = known.information + candidate
-    active, untouched = active_parameters(known.parameters, together, known.at_bound)
-    before, later = np.sqrt(np.diag(known.covariance)), np.sqrt(np.diag(after))
-    weak = weak_directions(known.parameters, together, active)
-    return ExpectedGain(name, known.parameters, before, later, float(0.5 * np.linalg.slogdet(ratio)[1]), weak, untouched)
+    together = current.information + candidate
+    active, untouched = active_parameters(current.parameters, together, current.at_bound)
+    before, later = np.sqrt(np.diag(current.covariance)), np.sqrt(np.diag(after))
+    weak = weak_directions(current.parameters, together, active)
+    return ExpectedGain(name, current.parameters, before, later, float(0.5 * np.linalg.slogdet(ratio)[1]), weak, untouched)
 
 
-def rank_tests(known: Identifiability, candidates: Mapping[str, np.ndarray]) -> tuple[ExpectedGain, ...]:
+def rank_tests(current: Identifiability, candidates: Mapping[str, np.ndarray]) -> tuple[ExpectedGain, ...]:
     """Rank candidate tests, the one that adds most first.
 
     Args:
-        known: What the records determine so far.
+        current: What the records determine so far.
         candidates: (p, p) information of each test, by its name.
 
     Returns:
         What each test would add, in order.
     """
-    found = [expected_information(known, matrix, name) for name, matrix in candidates.items()]
-    return tuple(sorted(found, key=lambda one: -one.gain))
+    gains = [expected_information(current, matrix, name) for name, matrix in candidates.items()]
+    return tuple(sorted(gains, key=lambda gain: -gain.gain))
 
 
 def effective_noise(fit: Fit, tests: Sequence[TestFit]) -> dict[str, float]:
@@ -112,8 +112,8 @@ def effective_noise(fit: Fit, tests: Sequence[TestFit]) -> dict[str, float]:
         Standard deviation of the noise (m, rad), by channel.
     """
     variance, inflation = fit.decays.left_errors(tests)
-    there = np.asarray(fit.decays.problem.data.present).any(axis=-1)
-    power = (variance * inflation * there).sum(axis=0) / np.maximum(there.sum(axis=0), 1)
+    present = np.asarray(fit.decays.problem.data.present).any(axis=-1)
+    power = (variance * inflation * present).sum(axis=0) / np.maximum(present.sum(axis=0), 1)
     return {DOFS[dof]: float(np.sqrt(x)) for dof, x in zip(fit.decays.problem.data.dofs, power, strict=True)}
 
 
@@ -165,9 +165,9 @@ def decay_information(
     record = Record(test.id, test.kind, test.use, dof, time, values, None, None, dict(noise), True, 0.0, test, test.file)
     data = gather_decays([record], model, min(float(modes.period.min()) / STEPS_PER_PERIOD, memory_step(model)))
     problem = DecayProblem(model, space, data, True, None if space.moves_equilibrium else rest)
-    own = np.zeros((3, len(data.dofs)))
-    own[0] = [values[DOFS[i]][0] / float(unit) for i, unit in zip(data.dofs, data.unit[0], strict=True)]
+    release = np.zeros((3, len(data.dofs)))
+    release[0] = [values[DOFS[i]][0] / float(unit) for i, unit in zip(data.dofs, data.unit[0], strict=True)]
     x = jnp.array([p.transform.inverse(float(model.values[p.label])) for p in space.free])
-    products = np.asarray(_products(problem, Unknowns(x, jnp.asarray(own.reshape(1, -1)))))
+    products = np.asarray(_products(problem, Unknowns(x, jnp.asarray(release.reshape(1, -1)))))
     variance = np.array([[noise[DOFS[i]] ** 2 for i in data.dofs]])
     return shared_information(products, 1 / variance, variance, np.ones(variance.shape), len(x))

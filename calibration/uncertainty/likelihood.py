@@ -142,14 +142,17 @@ class Likelihood:
 
         A drop of Q over nu is a chi-square of one degree of freedom.
 
-        nu = d^T S d / d^T H d along d = H^-1 e_i, which is [H^-1 S H^-1]_ii / [H^-1]_ii: Kent 1982 (Biometrika 69, 19-27,
-        section 3) with one parameter of interest. Its own prior is left out where the manifest states none.
+        nu = d^T S d / d^T H d along d = H^-1 e_i, which is [H^-1 S H^-1]_ii / [H^-1]_ii, with one parameter of interest. The
+        parameter's own prior is left out where the manifest states none.
 
         Args:
             label: Label of the parameter.
 
         Returns:
             nu (-), and how all unknowns move with a unit step of the parameter, (n,).
+
+        References:
+            Kent 1982, Biometrika 69, 19-27, section 3.
         """
         i = self.index(label)
         move = pseudo_inverse(self.hessian, WEAK_PRIOR_ROUNDING)[:, i]
@@ -164,7 +167,7 @@ class Likelihood:
         return float(ratio), move / move[i]
 
     def scale(self) -> float:
-        """What Q is multiplied by to be -2 log likelihood on the average over all directions: n / tr(H^-1 S)."""
+        """Factor n / tr(H^-1 S) by which Q is -2 log likelihood on the average over all directions."""
         meat = self.scatter + np.diag(self.prior[1])
         return float(len(meat) / np.trace(pseudo_inverse(self.hessian, WEAK_PRIOR_ROUNDING) @ meat))
 
@@ -187,9 +190,9 @@ def restored_fit(
         ended: Calibrated values by label.
         report: As in `prepare_fit`.
     """
-    declared = campaign.model.values
+    baseline = campaign.model.values
     # only what is not as declared, so that types stay, and what was compiled for the fit serves again
-    start = {k: float(v) for k, v in began.items() if float(v) != float(declared[k])}
+    start = {k: float(v) for k, v in began.items() if float(v) != float(baseline[k])}
     fit = prepare_fit(campaign, free=list(ended), start=start, report=report)
     coordinates = [p.transform.inverse(float(ended[p.label])) for p in fit.decays.problem.space.free]
     fit.unknowns = fit.unknowns._replace(shared=jnp.array(coordinates))
@@ -206,11 +209,11 @@ def likelihood(campaign: Campaign, result: Calibration) -> Likelihood:
     Returns:
         The likelihood about the calibrated values.
     """
-    found = result.parameters
+    parameters = result.parameters
     fit = restored_fit(
         campaign,
-        {**result.model.values, **{label: one.start for label, one in found.items()}},
-        {label: one.value for label, one in found.items()},
+        {**result.model.values, **{label: estimate.start for label, estimate in parameters.items()}},
+        {label: estimate.value for label, estimate in parameters.items()},
     )
     run_fit(fit)
     return likelihood_of(fit)
@@ -219,7 +222,7 @@ def likelihood(campaign: Campaign, result: Calibration) -> Likelihood:
 @eqx.filter_jit
 def _slopes(problem: DecayProblem, unknowns: Unknowns) -> tuple[Float[Array, "r c t"], Float[Array, "r c t k"]]:
     """Residual, and its derivatives to the shared coordinates and the record's own."""
-    return jax.lax.map(lambda one: problem.slopes(unknowns.shared, *one), (unknowns.own, problem.data))
+    return jax.lax.map(lambda inputs: problem.slopes(unknowns.shared, *inputs), (unknowns.own, problem.data))
 
 
 def likelihood_of(fit: Fit) -> Likelihood:
@@ -239,36 +242,36 @@ def likelihood_of(fit: Fit) -> Likelihood:
     # the residual's own row and column, which `assemble` leaves out
     blocks = np.pad(np.einsum("rctk,rctl,rc->rkl", slope, slope, weight), ((0, 0), (0, 1), (0, 1)))
     information = gauss_newton_matrix(blocks, shared)
-    size, own = len(information), slope.shape[-1] - shared
+    size, own_count = len(information), slope.shape[-1] - shared
     ridge, width = np.asarray(fit.ridge) ** 2, fit.width
     prior = tuple(np.concatenate([x, np.zeros(size - shared)]) for x in (ridge, ridge**2 * width**2))
     back = pseudo_inverse(information + np.diag(prior[0]), WEAK_PRIOR_ROUNDING)
-    seen: dict[tuple[str, str], list[tuple[int, int, Periodogram]]] = {}
+    periodograms: dict[tuple[str, str], list[tuple[int, int, Periodogram]]] = {}
     for i, record in enumerate(fit.decays.records):
-        at = np.r_[:shared, shared + i * own : shared + (i + 1) * own]
-        mine, n = back[np.ix_(at, at)], len(record.time)
+        indices = np.r_[:shared, shared + i * own_count : shared + (i + 1) * own_count]
+        inverse, n = back[np.ix_(indices, indices)], len(record.time)
         for j, dof in enumerate(data.dofs):
             if weight[i, j] == 0 or DOFS[dof] not in record.values:
                 continue
             wave = np.fft.rfft(slope[i, j, :n], axis=0)
-            leverage = weight[i, j] * np.einsum("fk,kl,fl->f", wave.conj(), mine, wave).real / n
-            one = periodogram(residual[i, j, :n], leverage, step_of(record.time))
-            seen.setdefault((str(record.degree_of_freedom), DOFS[dof]), []).append((i, j, one))
+            leverage = weight[i, j] * np.einsum("fk,kl,fl->f", wave.conj(), inverse, wave).real / n
+            spectrum = periodogram(residual[i, j, :n], leverage, step_of(record.time))
+            periodograms.setdefault((str(record.degree_of_freedom), DOFS[dof]), []).append((i, j, spectrum))
     colour, blocks, flat = {}, np.zeros_like(blocks), np.zeros_like(blocks)
-    for channel in dict.fromkeys(channel for _, channel in seen):
-        kinds = [kind for kind in seen if kind[1] == channel]
-        for kind, (found, variances) in zip(
-            kinds, fit_colours([[one for *_, one in seen[kind]] for kind in kinds]), strict=True
+    for channel in dict.fromkeys(channel for _, channel in periodograms):
+        kinds = [kind for kind in periodograms if kind[1] == channel]
+        for kind, (fitted, variances) in zip(
+            kinds, fit_colours([[spectrum for *_, spectrum in periodograms[kind]] for kind in kinds]), strict=True
         ):
-            colour[kind] = found
-            for (i, j, one), variance in zip(seen[kind], variances, strict=True):
+            colour[kind] = fitted
+            for (i, j, spectrum), variance in zip(periodograms[kind], variances, strict=True):
                 time = fit.decays.records[i].time
-                for into, power, of in ((blocks, float(variance), found), (flat, one.variance, WHITE_NOISE)):
-                    part = score_covariance(slope[i, j, : len(time)], power, of, step_of(time))
+                for into, power, noise in ((blocks, float(variance), fitted), (flat, spectrum.variance, WHITE_NOISE)):
+                    part = score_covariance(slope[i, j, : len(time)], power, noise, step_of(time))
                     into[i, :-1, :-1] += weight[i, j] ** 2 * part
     scatters = [gauss_newton_matrix(blocks, shared), gauss_newton_matrix(flat, shared)]
     covariance, white = (back @ (scatter + np.diag(prior[1])) @ back for scatter in scatters)
-    spectra = {(i, j): one for group in seen.values() for i, j, one in group}
+    spectra = {(i, j): spectrum for group in periodograms.values() for i, j, spectrum in group}
     return Likelihood(fit, slope, residual, information, scatters[0], (prior[0], prior[1]), covariance, white, colour, spectra)
 
 

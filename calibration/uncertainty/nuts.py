@@ -71,8 +71,8 @@ class Samples:
         Raises:
             InputError: The label is unknown.
         """
-        mine = self.value[..., self.likelihood.index(label)].ravel()
-        low, high = np.quantile(mine, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
+        draws = self.value[..., self.likelihood.index(label)].ravel()
+        low, high = np.quantile(draws, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
         return float(low), float(high)
 
     def __repr__(self) -> str:
@@ -101,9 +101,9 @@ Energy = Callable[[Float[Array, " n"]], Float[Array, ""]]
 def potential_energy(likelihood: Likelihood, scale: float) -> Energy:
     """Energy of all coordinates (n,): half of `scale` times the sum of squares, and half of the prior's.
 
-    Every free parameter has a normal prior in its coordinate, wide unless the manifest says otherwise, so that no Jacobian of
-    the transforms enters. Its gradient J^T W r is a column of the products that the fit works with: one forward-mode pass,
-    and nothing goes back through the solver.
+    Every free parameter has a normal prior in its coordinate, wide unless the manifest says otherwise. So no Jacobian of the
+    transforms enters. The gradient J^T W r is a column of the products that the fit works with. It takes one forward-mode
+    pass, and nothing goes back through the solver.
     """
     fit, weight = likelihood.fit, jnp.asarray(likelihood.fit.decays.weight)
     mean, precision = fit.mean, jnp.asarray(1 / fit.width)
@@ -145,8 +145,8 @@ def sample(
 
     The density is exp(-energy) of `potential_energy`, with the same sum of squares as the profile's. Coordinates are
     whitened by the fit's information, so that steps are long and few. Errors that are neither white nor of known size are
-    taken into account as in the profile: every draw's distance from the estimate is stretched along the common directions
-    of both covariances, so that the draws' covariance near the estimate is the sandwich's. Chains run side by side, as many
+    taken into account as in the profile. Every draw's distance from the estimate is stretched along the common directions
+    of both covariances. The draws' covariance near the estimate is then the sandwich's. Chains run side by side, as many
     as there are cores. Stopped by the user (KeyboardInterrupt) it returns the draws of all chains, if each has `MIN_DRAWS`.
 
     Args:
@@ -188,12 +188,14 @@ def sample(
     begun = [kernel.init(jax.random.fold_in(key, 2 + k), warmup, start[k], (), {}) for k in range(chains)]
     step = jax.jit(lambda state: kernel.sample(state, (), {}))
     rows = _run_chains(step, begun, warmup, draws, progress)
-    z, lost = np.array([[at for at, _ in row] for row in rows]), sum(astray for row in rows for _, astray in row)
+    z, lost = np.array([[position for position, _ in row] for row in rows]), sum(astray for row in rows for _, astray in row)
     shared = len(fit.decays.problem.space.free)
     coordinate = (centre + z @ (stretch @ root).T)[..., :shared]
     value = np.empty_like(coordinate)
-    for i, one in enumerate(fit.decays.problem.space.free):
-        value[..., i] = jax.vmap(one.transform.forward)(jnp.asarray(coordinate[..., i].ravel())).reshape(coordinate.shape[:-1])
+    for i, parameter in enumerate(fit.decays.problem.space.free):
+        value[..., i] = jax.vmap(parameter.transform.forward)(jnp.asarray(coordinate[..., i].ravel())).reshape(
+            coordinate.shape[:-1]
+        )
     r_hat, effective = (np.asarray(f(coordinate)) for f in (split_gelman_rubin, effective_sample_size))
     return Samples(likelihood.labels, coordinate, value, r_hat, effective, lost, seed, draws, likelihood)
 
@@ -201,7 +203,10 @@ def sample(
 def _run_chains(
     step: Callable[[Any], Any], begun: list[Any], warmup: int, draws: int, progress: Callable[[int, str], None]
 ) -> list[list[tuple[np.ndarray, bool]]]:
-    """Where chains were after their warm-up, and whether a step went astray: as many draws of each as all have."""
+    """Positions of the chains after their warm-up, and whether each step diverged.
+
+    All chains are cut to the number of draws of the shortest one.
+    """
     rows: list[list[tuple[np.ndarray, bool]]] = [[] for _ in begun]
     done, stop = [0] * len(begun), threading.Event()
 
@@ -221,8 +226,8 @@ def _run_chains(
             while under_way:
                 over, under_way = wait(under_way, timeout=POLL_INTERVAL)
                 stop_if_asked()
-                for one in over:
-                    one.result()
+                for future in over:
+                    future.result()
                 progress(sum(done), "finding the step" if min(done) < warmup else "drawing")
         except BaseException as stopped:
             stop.set()
@@ -235,8 +240,11 @@ def _run_chains(
 
 
 def whitening(likelihood: Likelihood, scale: float) -> tuple[np.ndarray, np.ndarray]:
-    """L (n, n) with L L^T the covariance that the energy has at the estimate, and Omega (n, n) that stretches it: Omega L L^T
-    Omega^T is the sandwich's. Omega = C V nu^1/2 V^T with the common directions C' V = C V nu, V^T C V = 1."""
+    """Whitening matrix L (n, n) of the energy, and the matrix Omega (n, n) that stretches to the sandwich.
+
+    L L^T is the covariance that the energy has at the estimate, Omega L L^T Omega^T that of the sandwich. Omega is
+    C V nu^1/2 V^T, with the common directions C' V = C V nu, V^T C V = 1.
+    """
     precision = np.zeros(len(likelihood.information))
     precision[: len(likelihood.labels)] = 1 / likelihood.fit.width**2
     hessian = scale * likelihood.information + np.diag(precision)

@@ -75,11 +75,14 @@ class Profile:
 
 
 def _held(unknowns: Unknowns, args):
-    """`normal_equations` with one shared coordinate held at a value: nothing depends on it, so that no step moves it."""
+    """`normal_equations` with one shared coordinate held at a value.
+
+    Nothing depends on that coordinate, so that no step moves it.
+    """
     fit, index, value = args
-    there = unknowns._replace(shared=unknowns.shared.at[index].set(value))
-    info, products = normal_equations(there, fit)
-    free = jnp.ones(len(there.shared)).at[index].set(0.0)
+    held = unknowns._replace(shared=unknowns.shared.at[index].set(value))
+    info, products = normal_equations(held, fit)
+    free = jnp.ones(len(held.shared)).at[index].set(0.0)
     gradient = info.grad._replace(shared=info.grad.shared * free)
     matrix = ArrowMatrix(info.hessian.shared * jnp.outer(free, free), info.hessian.cross * free[:, None], info.hessian.own)
     return optx.FunctionInfo.EvalGradHessian(info.f, gradient, matrix), products
@@ -103,7 +106,7 @@ class _Refit:
         self.gain = MAX_REFIT_SHARE * self.nu * float(chi2.ppf(level, 1))
 
     def moved(self, unknowns: Unknowns, step: float) -> Unknowns:
-        """Where the others should be after a step of the held one, to first order."""
+        """Unknowns after a step of the held coordinate, to first order."""
         p, move = len(unknowns.shared), jnp.asarray(self.move * step)
         return Unknowns(unknowns.shared + move[:p], unknowns.own + move[p:].reshape(unknowns.own.shape))
 
@@ -141,12 +144,12 @@ def profile(likelihood: Likelihood, label: str, level: float = DEFAULT_LEVEL) ->
         freedom, nu by `Likelihood.stretch`.
     """
     refit = _Refit(likelihood, label, level)
-    at = float(likelihood.estimate[refit.index])
-    lowest, start = refit(refit.start, at)
+    estimate = float(likelihood.estimate[refit.index])
+    lowest, start = refit(refit.start, estimate)
     refit.size = lowest
-    points = {at: lowest}
+    points = {estimate: lowest}
     for sign in (-1, 1):
-        points |= _outward(refit, likelihood, label, at, lowest, start, sign, level)
+        points |= _outward(refit, likelihood, label, estimate, lowest, start, sign, level)
     x = np.array(sorted(points))
     cost = np.array([points[c] for c in x])
     x, cost = x[np.isfinite(cost)], cost[np.isfinite(cost)]
@@ -159,7 +162,7 @@ def profile(likelihood: Likelihood, label: str, level: float = DEFAULT_LEVEL) ->
     return Profile(
         label,
         about.unit,
-        likelihood.value(label, at),
+        likelihood.value(label, estimate),
         np.array([likelihood.value(label, c) for c in x]),
         x,
         drop,
@@ -172,26 +175,33 @@ def profile(likelihood: Likelihood, label: str, level: float = DEFAULT_LEVEL) ->
 
 
 def _outward(
-    refit: _Refit, likelihood: Likelihood, label: str, at: float, lowest: float, unknowns: Unknowns, sign: int, level: float
+    refit: _Refit,
+    likelihood: Likelihood,
+    label: str,
+    estimate: float,
+    lowest: float,
+    unknowns: Unknowns,
+    sign: int,
+    level: float,
 ) -> dict[float, float]:
     """Q by coordinate on one side, its points even in the signed root."""
     transform, limit = likelihood.free(label).transform, float(np.sqrt(chi2.ppf(level, 1)))
     points: dict[float, float] = {}
-    root, x = 0.0, at
+    root, x = 0.0, estimate
     step = SIGNED_ROOT_STEP * float(likelihood.deviation()[refit.index])
     while len(points) < MAX_GRID_POINTS and not (points and transform.at_bound(x)):
         stop_if_asked()
-        cost, there = refit(refit.moved(unknowns, sign * step), x + sign * step)
+        cost, reached = refit(refit.moved(unknowns, sign * step), x + sign * step)
         before, root = root, float(np.sqrt(max(cost - lowest, 0.0) / refit.nu))
         if not root - before < MAX_ROOT_STEP:  # a long step that the others do not follow in a straight line
-            other, here = refit(unknowns, x + sign * step)
-            if other < cost or not np.isfinite(cost):
-                cost, there, root = other, here, float(np.sqrt(max(other - lowest, 0.0) / refit.nu))
+            unmoved_cost, unmoved = refit(unknowns, x + sign * step)
+            if unmoved_cost < cost or not np.isfinite(cost):
+                cost, reached, root = unmoved_cost, unmoved, float(np.sqrt(max(unmoved_cost - lowest, 0.0) / refit.nu))
         points[x + sign * step] = cost
         if not root - before < MAX_ROOT_STEP:  # too far to draw a line through, or a motion that has run away
             step, root = 0.4 * step, before
             continue
-        x, unknowns = x + sign * step, there
+        x, unknowns = x + sign * step, reached
         if root > limit:
             break
         step *= float(np.clip(SIGNED_ROOT_STEP / max(root - before, 1e-9), 0.5, 2.0))
@@ -199,7 +209,7 @@ def _outward(
 
 
 def _crossing(x: np.ndarray, drop: np.ndarray, limit: float) -> float | None:
-    """Where the root of the drop first reaches the limit, going outwards; None where it does not."""
+    """Coordinate where the root of the drop first reaches the limit outwards; None where it does not."""
     root = np.sqrt(drop)
     beyond = np.flatnonzero(root > limit)
     if not len(beyond):
