@@ -354,7 +354,7 @@ def test_a_diagnosis_says_in_one_line_that_it_starts_anew(tmp_path, monkeypatch)
     assert told_in(campaign, path, "round 1")[0] is None and path.exists()
     monkeypatch.setattr(fingerprints, "sources", lambda: "of a load that was changed")
     _, seen, told = told_in(campaign, path, "round 1")
-    assert any(stage.startswith("calibrating") for stage in seen)
+    assert any(stage.startswith("fitting the baseline") for stage in seen)
     assert len(told) == 1 and "other source code; the diagnosis starts anew" in told[0] and "\n" not in told[0]
     assert told_in(campaign, path, "round 1")[2] == []  # which was kept anew
 
