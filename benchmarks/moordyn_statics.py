@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence.mooring_lines import MOORDYN, RUNS, platform
+from benchmarks.evidence.mooring_lines_runs import MOORDYN, RUNS, platform
 from jaxhydro.cli.export_command import source_of
 from jaxhydro.interop.openfast.export_moordyn import ALONE, export_lines
 from jaxhydro.platform.build import build

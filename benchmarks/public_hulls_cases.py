@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from benchmarks.evidence.hulls_cases import CASES as BY_HAND
-from benchmarks.evidence.hulls_cases import RAFT
+from benchmarks.evidence.hulls_published import PUBLISHED as BY_HAND
+from benchmarks.evidence.hulls_published import RAFT
 
 MOTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 RAFT_STATICS = Path(__file__).with_name("raft") / "statics.json"
@@ -72,7 +72,7 @@ def moordyn(number: int, deck: str) -> dict[str, dict[str, str]]:
 
 def by_hand(name: str) -> tuple[Published, ...]:
     """Periods that the page of validation compares the built-in platform with, other than RAFT's."""
-    kept = (one for one in BY_HAND[name].published if one.source != RAFT)
+    kept = (one for one in BY_HAND[name] if one.source != RAFT)
     return tuple(Published(one.source, {dof: 1 / f for dof, f in one.frequency.items()}, rounding=one.rounding) for one in kept)
 
 

@@ -4,7 +4,8 @@
                                   [--only SECTION ...] [--fresh] [--stale] [--text]
 
 Finished parts are kept in .venv/validate-cache under a hash of the sources and files that they depend on; what has not
-changed is not done again, and a run that was stopped goes on where it was. `--fresh` forgets them first. `--stale`
+changed is not done again, and a run that was stopped goes on where it was. Of a section's own modules the hash covers those
+that run (`_runs`), not those that make its text (`_text`). `--fresh` forgets them first. `--stale`
 takes what earlier sources gave rather than running anything long, and says so on the page; what was said of the campaigns of
 `diagnoses`, too many for one day, is kept in docs/diagnoses.jsonl for it.
 
@@ -19,6 +20,7 @@ import sys
 import textwrap
 import time
 from pathlib import Path
+from types import ModuleType
 
 from benchmarks.evidence import (
     classical_bias,
@@ -40,31 +42,42 @@ from benchmarks.evidence import (
     periods,
     seeds,
     starts,
-    study_text,
+    study,
     tuned_seas,
 )
 from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, say
 
 PAGE = ROOT / "docs" / "validation.md"
-SECTIONS = (
-    "seeds",
+MODULES: dict[str, ModuleType] = {  # by section, in the page's order
+    "seeds": seeds,
+    "coverage": coverage,
+    "identified": identified,
+    "periods": periods,
+    "hulls": hulls,
+    "mooring_lines": mooring_lines,
+    "openfast": openfast,
+    "openfast_waves": openfast_waves,
+    "measured": measured,
+    "measured_waves": measured_waves,
+    "focal_laboratory": focal_laboratory,
+    "focal_tables": focal_tables,
+    "tuned_seas": tuned_seas,
+    "classical_bias": classical_bias,
+    "starts": starts,
+    "global_search": global_search,
+    "study": study,
+    "diagnoses": diagnoses,
+    "lacking": lacking,
+    "numerical_tank": numerical_tank,
+}
+SECTIONS = tuple(MODULES)
+IN_PARALLEL = (
     "coverage",
     "identified",
-    "periods",
-    "hulls",
-    "mooring_lines",
-    "openfast",
-    "openfast_waves",
-    "measured",
     "measured_waves",
-    "focal_laboratory",
-    "focal_tables",
     "tuned_seas",
     "classical_bias",
-    "starts",
     "global_search",
-    "study",
-    "diagnoses",
     "lacking",
     "numerical_tank",
 )
@@ -86,36 +99,11 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return seeds.run(options.seeds, options.processes, figures)
     if name == "starts":
         return starts.run(options.starts, options.processes, figures)
-    if name == "measured_waves":
-        return measured_waves.run(figures, options.processes)
-    if name == "classical_bias":
-        return classical_bias.run(figures, options.processes)
-    if name == "coverage":
-        return coverage.run(figures, options.processes)
-    if name == "global_search":
-        return global_search.run(figures, options.processes)
-    if name == "identified":
-        return identified.run(figures, options.processes)
-    if name == "tuned_seas":
-        return tuned_seas.run(figures, options.processes)
-    if name == "numerical_tank":
-        return numerical_tank.run(figures, options.processes)
-    if name == "lacking":
-        return lacking.run(figures, options.processes)
     if name == "diagnoses":
         return diagnoses.run(figures, options.processes, options.diagnoses)
-    plain = {
-        "periods": periods,
-        "hulls": hulls,
-        "mooring_lines": mooring_lines,
-        "openfast": openfast,
-        "openfast_waves": openfast_waves,
-        "measured": measured,
-        "focal_laboratory": focal_laboratory,
-        "focal_tables": focal_tables,
-        "study": study_text,
-    }
-    return plain[name].run(figures)
+    if name in IN_PARALLEL:
+        return MODULES[name].run(figures, options.processes)
+    return MODULES[name].run(figures)
 
 
 def command(name: str, options: argparse.Namespace) -> str:

@@ -1,4 +1,4 @@
-"""What the sections of docs/validation.md share: where things are, a cache keyed by what a number depends on, tables."""
+"""Paths, cache of results and tables that the sections of docs/validation.md share."""
 
 import hashlib
 import json
@@ -43,7 +43,14 @@ TRUE = {
 
 
 class Section(NamedTuple):
-    """A section of the page: its heading's words, its text, its figures' files, and what falls short of a goal."""
+    """A section of the page.
+
+    Attributes:
+        title: Heading.
+        text: Text in Markdown.
+        figures: Files of the figures.
+        short: What falls short of a goal, a sentence each.
+    """
 
     title: str
     text: str
@@ -55,8 +62,26 @@ class Absent(Exception):
     """What a section needs is not on this machine."""
 
 
+def require(path: Path, message: str) -> None:
+    """Check that data of a run is there; a text that is made of kept results needs none.
+
+    Args:
+        path: File or folder of the data.
+        message: Sentence for `Absent`.
+
+    Raises:
+        Absent: Where the data is missing and `text_only` is not set.
+    """
+    if not text_only and not path.exists():
+        raise Absent(message)
+
+
 def fingerprint(*inputs: Path | str) -> str:
-    """Hash of the packages' sources, `EDGE` left out, and of files, folders and words."""
+    """Hash of the packages' sources, `EDGE` left out, and of files, folders and parameters of a run.
+
+    Of a section's own modules only those that run are inputs. A key that covers text of the page would make a run of hours
+    stale by a change of wording.
+    """
     every = [path for name in ("jaxhydro", "calibration") for path in (ROOT / name).rglob("*.py")]
     sources = sorted(path for path in every if not EDGE & {path, *path.parents})
     digest = hashlib.sha256()
@@ -84,8 +109,8 @@ def cached(section: str, key: str, name: str, work: Callable[[], Any] | None = N
     Raises:
         Absent: Where `text_only` is set and there is no result.
     """
-    if text_only and (kept := evidence(section).get(name)) is not None:
-        return kept["result"]
+    if text_only and (entry := evidence(section).get(name)) is not None:
+        return entry["result"]
     path = CACHE / section / key / f"{name}.json"
     others = sorted((CACHE / section).glob(f"*/{name}.json"), key=lambda p: p.stat().st_mtime)
     if not path.exists() and others and (accept_stale or text_only):
@@ -123,10 +148,12 @@ def evidence(section: str) -> dict[str, Any]:
 
 def record(section: str, key: str, name: str, result: Any) -> None:
     """Write a result into docs/evidence too, unless the section's results are too many for it."""
-    known, one = evidence(section), {"sources": key, "result": result}
-    if section in KEPT_ELSEWHERE or known.get(name) == one:
+    results, entry = evidence(section), {"sources": key, "result": result}
+    if section in KEPT_ELSEWHERE or results.get(name) == entry:
         return
-    text = json.dumps(known | {name: one}, indent=1, sort_keys=True) + "\n"
+    # names are sorted, what is within a result is not: its order is that of the rows of tables
+    every = dict(sorted((results | {name: entry}).items()))
+    text = json.dumps(every, indent=1) + "\n"
     if len(text) > MAX_EVIDENCE:
         say(f"  {section}: {name} is too large for docs/evidence and stays in the cache")
         return
@@ -137,7 +164,9 @@ def record(section: str, key: str, name: str, result: Any) -> None:
 def parallel(
     section: str, key: str, names: Sequence[str], work: Callable[[str], Any], processes: int, go_on: bool = False
 ) -> Iterator[tuple[str, Any]]:
-    """Results of `work(name)` for all names, those in the cache first; the others from processes of their own.
+    """Results of `work(name)` for all names.
+
+    Those in the cache come first; the others are worked out by processes of their own.
 
     Where `accept_stale` is set and there are any, there are no others, unless the section is to `go_on` over many sessions.
     """

@@ -82,18 +82,23 @@ def of_measured(name: str) -> dict[str, list[float]]:
     return {k: [float(sd), float(white), float(sd / white)] for k, sd, white in rows if k in known}
 
 
+def key() -> str:
+    """Key of the section's results."""
+    sources = ("evidence/coverage_campaigns.py", "make_demo_campaign.py", "reference_model.py")
+    return fingerprint(*(ROOT / "benchmarks" / name for name in sources))
+
+
 def run(figures: Path, processes: int, campaigns: int = CAMPAIGNS) -> Section:
     """Campaigns that differ in releases, noise and disturbance."""
-    sources = ("evidence/coverage_campaigns.py", "make_demo_campaign.py", "reference_model.py")
-    key = fingerprint(*(ROOT / "benchmarks" / name for name in sources))
+    sources = key()
     results: dict[int, dict[str, Any]] = {}
-    for name, result in parallel("coverage", key, [f"campaign-{i}" for i in range(campaigns)], of_campaign, processes):
+    for name, result in parallel("coverage", sources, [f"campaign-{i}" for i in range(campaigns)], of_campaign, processes):
         index = int(name.removeprefix("campaign-"))
         results[index] = result
         hits = [a <= TRUE[k] <= b for k, (a, b) in result["intervals"]["coloured"].items()]
         say(f"  {name} ({kind_of(index)}): {sum(hits)} of {len(hits)} ({len(results)} of {campaigns})")
     measured = {
-        name: cached("coverage", key, name, partial(of_measured, name))
+        name: cached("coverage", sources, name, partial(of_measured, name))
         for name in MEASURED
         if (SHARED / "measured" / name).exists()
     }

@@ -17,6 +17,11 @@ from benchmarks.evidence.stored_diagnoses import answer_of, keep_all, kept, list
 SECTION = "diagnoses"
 
 
+def key() -> str:
+    """Key of the section's results."""
+    return fingerprint(*TANK_SOURCES)
+
+
 def folder_of(name: str) -> Path:
     """Folder of a campaign."""
     return CACHE / "diagnosed-campaigns" / name
@@ -62,7 +67,7 @@ def of_case(name: str) -> dict[str, Any]:
         },
         "laws": {one.motion: [[term.name for term in one.law.terms], one.law.share] for one in result.latent},
         "seconds": result.seconds,
-        "sources": fingerprint(*TANK_SOURCES),
+        "sources": key(),
     }
 
 
@@ -72,14 +77,14 @@ def run(figures: Path, processes: int, most: int) -> Section:
         if not any((CACHE / SECTION).glob(f"*/{name}.json")):
             keep(SECTION, result["sources"], name, result)
     names = [case.name for case in cases() if not common.text_only or case.name in kept()][:most]
-    key = fingerprint(*TANK_SOURCES)
-    make_missing([name for name in names if cached(SECTION, key, name) is None])
+    sources = key()
+    make_missing([name for name in names if cached(SECTION, sources, name) is None])
     results: dict[str, dict[str, Any]] = {}
-    for name, result in parallel(SECTION, key, names, of_case, processes, go_on=True):
+    for name, result in parallel(SECTION, sources, names, of_case, processes, go_on=True):
         results[name] = result
         words = ", ".join(named_effects(answer_of(result))) or result["verdict"]
         say(f"  {name}: {words} ({result['seconds']:.0f} s, {len(results)} of {len(names)})")
         keep_all({name: result})
     ordered = {Case.of(name): results[name] for name in names if name in results}
-    earlier = sum(result["sources"] != key for result in ordered.values())
+    earlier = sum(result["sources"] != sources for result in ordered.values())
     return conclude(ordered, earlier, draw({case: answer_of(one) for case, one in ordered.items()}, figures / "diagnoses.png"))

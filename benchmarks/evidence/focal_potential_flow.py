@@ -48,6 +48,6 @@ def linear_motions() -> tuple[np.ndarray, np.ndarray]:
     return 1 / np.array(periods), np.array(motions)
 
 
-def interpolated(frequency: np.ndarray, values: np.ndarray, at: Sequence[float]) -> np.ndarray:
+def interpolated(frequency: np.ndarray, values: np.ndarray, points: Sequence[float]) -> np.ndarray:
     """Complex values at other frequencies (Hz)."""
-    return np.interp(at, frequency, values.real) + 1j * np.interp(at, frequency, values.imag)
+    return np.interp(points, frequency, values.real) + 1j * np.interp(points, frequency, values.imag)

@@ -60,19 +60,24 @@ def handicap(values: dict[str, float]) -> float:
     return float(task.simulate(np.asarray(jnp.array([x])))[0])
 
 
+def key() -> str:
+    """Key of the section's results."""
+    return fingerprint(DEMO, f"{RECORDS} {BUDGET}")
+
+
 def run(figures: Path, processes: int) -> Section:
     """Four methods by ten seeds."""
-    key = fingerprint(DEMO, f"{RECORDS} {BUDGET}")
+    sources = key()
     # turn by turn, so that what else the machine does falls on all alike
     names = [f"{method}-{seed}" for seed in range(1, SEEDS + 1) for method in NAMES]
     found: dict[str, dict[str, dict[str, Any]]] = {method: {} for method in NAMES}
-    for name, one in parallel("global_search", key, names, of_seed, processes):
+    for name, one in parallel("global_search", sources, names, of_seed, processes):
         method, seed = name.rsplit("-", 1)
         found[method][seed] = one
         say(f"  {name}: J {one['objective']:.5f}, {one['simulations']:.0f} simulations, {one['seconds']:.0f} s CPU")
     results = {method: [runs[seed] for seed in sorted(runs, key=int)] for method, runs in found.items() if runs}
     best = min((one for runs in results.values() for one in runs), key=lambda one: one["objective"])
-    floor = cached("global_search", key, f"handicap-{best['objective']:.8g}", lambda: handicap(best["values"]))
+    floor = cached("global_search", sources, f"handicap-{best['objective']:.8g}", lambda: handicap(best["values"]))
     return conclude(results, best["objective"], floor, figures)
 
 

@@ -1,31 +1,26 @@
-"""Hulls of the section `hulls`: their files, a wave for each, and natural periods (s) published for them."""
+"""Hulls of the section `hulls`: their platform files, and a regular wave for each."""
 
 from pathlib import Path
 from typing import Any, NamedTuple
 
 HULLS = Path(__file__).resolve().parents[1] / "hulls"
 PLATFORMS = Path(__file__).resolve().parents[2] / "jaxhydro" / "platforms"
-RAFT = "RAFT at e6cb69e, tests/test_model.py: its strips (OC4: WAMIT) and MoorPy's lines"
-OC4_SOURCE = "NREL's forum, topic 1730, post 7, of Robertson et al. 2014 (OMAE2014-24040), figure 3"
-
-
-class Published(NamedTuple):
-    """Natural frequencies (Hz) by motion, half of their last digit (Hz), and where they stand."""
-
-    frequency: dict[str, float]
-    rounding: float
-    source: str
 
 
 class Case(NamedTuple):
-    """A hull: its title, platform file, a wave's period (s), amplitude (m) and heading (deg), and what is published."""
+    """A hull and a regular wave.
 
-    title: str
+    Attributes:
+        path: Platform file.
+        period: Period of the wave (s).
+        amplitude: Amplitude of the wave (m).
+        heading: Direction that the wave runs to (deg).
+    """
+
     path: Path
     period: float
     amplitude: float
     heading: float
-    published: tuple[Published, ...] = ()
 
     @property
     def moved(self) -> tuple[str, ...]:
@@ -34,43 +29,11 @@ class Case(NamedTuple):
 
 
 CASES = {
-    "oc3-hywind": Case(
-        "OC3-Hywind",
-        PLATFORMS / "oc3-hywind.yaml",
-        20.0,
-        0.01,
-        0.0,
-        (
-            Published({"pitch": 0.034}, 5e-4, "FAST, linearised: NREL's forum, topic 2422, post 6"),
-            Published(
-                {"surge": 0.0081183, "heave": 0.032428, "yaw": 0.12051},
-                5e-6,
-                "BModes' OC3Hywind.bmi, by pyBModes at 977b3d8, cases/ECOSYSTEM_FINDING.md",
-            ),
-            Published({"surge": 0.00796903, "heave": 0.03245079, "pitch": 0.03384323}, 1e-8, RAFT),
-        ),
-    ),
-    "oc4-deepcwind": Case(
-        "OC4-DeepCwind",
-        PLATFORMS / "oc4-deepcwind.yaml",
-        14.0,
-        0.01,
-        0.0,
-        (
-            Published({"surge": 0.0093, "heave": 0.0578, "pitch": 0.0373}, 5e-5, OC4_SOURCE),
-            Published({"surge": 0.00884301, "heave": 0.05733308, "pitch": 0.04003508, "yaw": 0.01253087}, 1e-8, RAFT),
-        ),
-    ),
-    "volturnus-s": Case(
-        "VolturnUS-S",
-        PLATFORMS / "volturnus-s.yaml",
-        14.0,
-        0.01,
-        0.0,
-        (Published({"surge": 0.007, "heave": 0.049, "pitch": 0.036}, 5e-4, "the report, NREL/TP-5000-76773"),),
-    ),
-    "iti-barge": Case("ITI Energy barge", PLATFORMS / "iti-barge.yaml", 20.0, 0.01, 0.0),
-    "ship-section": Case("ship section, 0.4 m wide", PLATFORMS / "ship-section.yaml", 3.0, 2e-4, 90.0),
+    "oc3-hywind": Case(PLATFORMS / "oc3-hywind.yaml", 20.0, 0.01, 0.0),
+    "oc4-deepcwind": Case(PLATFORMS / "oc4-deepcwind.yaml", 14.0, 0.01, 0.0),
+    "volturnus-s": Case(PLATFORMS / "volturnus-s.yaml", 14.0, 0.01, 0.0),
+    "iti-barge": Case(PLATFORMS / "iti-barge.yaml", 20.0, 0.01, 0.0),
+    "ship-section": Case(PLATFORMS / "ship-section.yaml", 3.0, 2e-4, 90.0),
 }
 BASES = {
     "name": "base_column",

@@ -35,13 +35,13 @@ class Loads(NamedTuple):
 
 def copies(platform: dict[str, Any]) -> list[dict[str, Any]]:
     """Members, turned about z by each heading, with their ends as arrays (m)."""
-    found = []
+    members = []
     for member in platform["members"]:
         for heading in np.radians(np.atleast_1d(member.get("heading", 0.0))):
             c, s = math.cos(heading), math.sin(heading)
             turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-            found.append(member | {"rA": turn @ np.array(member["rA"], float), "rB": turn @ np.array(member["rB"], float)})
-    return found
+            members.append(member | {"rA": turn @ np.array(member["rA"], float), "rB": turn @ np.array(member["rB"], float)})
+    return members
 
 
 def across(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -202,11 +202,11 @@ def box_afloat(a, along, e1, e2, size, wet, lowered, heave, rho) -> list[tuple]:
 
 def square(entries: dict[str, float], letter: str) -> np.ndarray:
     """A 6 by 6 matrix of entries by name; where one of ij and ji is given, the other is its mirror."""
-    found = np.zeros((6, 6))
+    matrix = np.zeros((6, 6))
     for key, value in entries.items():
         i, j = int(key[1]) - 1, int(key[2]) - 1
-        found[i, j], found[j, i] = value, entries.get(f"{letter}{j + 1}{i + 1}", value)
-    return found
+        matrix[i, j], matrix[j, i] = value, entries.get(f"{letter}{j + 1}{i + 1}", value)
+    return matrix
 
 
 class Hull:

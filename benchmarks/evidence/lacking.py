@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence.common import CACHE, SHARED, Absent, Section, fingerprint, parallel, say, table, within
+from benchmarks.evidence import common
+from benchmarks.evidence.common import CACHE, SHARED, Section, fingerprint, parallel, require, say, table, within
 from calibration.formatting import number, percent
 
 TITLE = "What models of measured bodies lack"
@@ -46,6 +47,7 @@ def campaign_of(name: str) -> Path:
 
 
 def key() -> str:
+    """Key of the section's results."""
     return fingerprint(*(MEASURED / name for name in ("kvlcc2", "focal-c4", "focal-c2")))
 
 
@@ -100,8 +102,7 @@ def numbers(folder: Path, name: str) -> dict[str, Any]:
 
 def run(figures: Path, processes: int) -> Section:
     """All campaigns; the longest first."""
-    if not MEASURED.exists():
-        raise Absent("the measured records (../shared/measured) are not on this machine")
+    require(MEASURED, "the measured records (../shared/measured) are not on this machine")
     results = {}
     for name, result in parallel("lacking", key(), list(CASES)[::-1], work, processes):
         results[name] = result
@@ -109,7 +110,8 @@ def run(figures: Path, processes: int) -> Section:
         say(f"  {name}: {', '.join(names) or result['missing']['verdict']} ({result['seconds']:.0f} s)")
     results = {name: results[name] for name in CASES}
     path = figures / "focal-closed.png"
-    draw(DRAWN, path)
+    if not common.text_only or (written_to(DRAWN) / "simulated.nc").exists():
+        draw(DRAWN, path)
     text = "\n".join(f"### {CASES[name]}\n\n{words(result)}" for name, result in results.items())
     return Section(TITLE, intro() + text, (path,), tuple(s for name, result in results.items() for s in short_of(name, result)))
 

@@ -1,4 +1,4 @@
-"""The words of the section on measured waves, from its cases' results."""
+"""Text of the section on measured waves."""
 
 import math
 from typing import Any
@@ -6,30 +6,13 @@ from typing import Any
 import numpy as np
 
 from benchmarks.evidence.common import table
+from benchmarks.evidence.measured_waves_runs import AT, CASES, FITTED, KEEL, MOTIONS, RESONANCE, TUNED, UNITS
 from calibration.formatting import number
 
-TITLE = "Measured waves: the model as it is, before the loop is closed"
-FITTED, TUNED = "campaign 4", "Table 1"
-CASES = {  # coefficients, order, diffraction, elements along a pontoon (None: as the platform file says, 3)
-    "fitted": (FITTED, 2, "maccamy_fuchs", None),
-    "fitted-1": (FITTED, 1, "maccamy_fuchs", None),
-    "fitted-morison": (FITTED, 2, "none", None),
-    "fitted-1-morison": (FITTED, 1, "none", None),
-    "tuned": (TUNED, 2, "maccamy_fuchs", None),
-    "tuned-1": (TUNED, 1, "maccamy_fuchs", None),
-    "tuned-morison": (TUNED, 2, "none", None),
-    "tuned-1-morison": (TUNED, 1, "none", None),
-    "tuned-ramp": (TUNED, 2, "ramp", None),
-    "tuned-twelve": (TUNED, 2, "maccamy_fuchs", 12),
-}
+SETS = {FITTED: "campaign 4", TUNED: "Table 1"}
 WORDS = {"maccamy_fuchs": "MacCamy-Fuchs", "none": "1 + Ca", "ramp": "ramp"}
 BANDS = ("low_frequency", "wave_frequency")
 SEA = "sea-6m"  # of the transfer functions
-KEEL = -20.37  # m: what heave reads in still water, as recorded
-RESONANCE = 0.035  # Hz, of pitch
-MOTIONS = ("surge", "heave", "pitch")
-UNITS = {"wave": "m", "surge": "m", "heave": "m", "pitch": "deg"}
-AT = (0.06, 0.08, 0.10, 0.12)  # Hz, of the transfer functions
 
 
 def off(sea: dict[str, Any], channel: str, band: str) -> float:
@@ -44,14 +27,21 @@ def off_keel(sea: dict[str, Any], band: str) -> float:
 
 
 def power(seas: dict[str, Any], index: int, channel: str = "surge", band: str = "low_frequency") -> float:
-    """p in band's standard deviation ~ Hs^p, by least squares over the seas; index 0 measured, 1 simulated."""
+    """Power of the significant height with which a band's standard deviation grows, by least squares.
+
+    Args:
+        seas: Results by sea.
+        index: 0 for the measured motion, 1 for the simulated one.
+        channel: Motion.
+        band: Band of the spectrum.
+    """
     heights = [math.log(4 * sea["deviation"]["wave"][0]) for sea in seas.values()]
     return float(np.polyfit(heights, [0.5 * math.log(sea["bands"][channel][band][index]) for sea in seas.values()], 1)[0])
 
 
-def lacks(found: dict[str, Any]) -> tuple[str, ...]:
+def shortcomings(result: dict[str, Any]) -> tuple[str, ...]:
     """What the model with the paper's coefficients misses."""
-    each = [f"{c} {', '.join(f'{off(s, c, band):+.0f}' for s in found['seas'].values())} %" for band in BANDS for c in MOTIONS]
+    each = [f"{c} {', '.join(f'{off(s, c, band):+.0f}' for s in result['seas'].values())} %" for band in BANDS for c in MOTIONS]
     low, wave = "; ".join(each[:3]), "; ".join(each[3:])
     return (
         f"focal-c2 in its three seas, Table 1's coefficients, unfitted. Low-frequency energy: {low}. "
@@ -59,18 +49,23 @@ def lacks(found: dict[str, Any]) -> tuple[str, ...]:
     )
 
 
-def words(found: dict[str, dict[str, Any]], vague: list[str], potential: dict[str, list[list[float]]]) -> str:
-    """The section's text."""
-    return "\n".join(
-        [*intro(found, vague), *conclusions(found, potential), *errors(found), *means(found), *responses(found, potential)]
-    )
+def words(results: dict[str, dict[str, Any]], vague: list[str], potential: dict[str, list[list[float]]]) -> str:
+    """Text of the section.
+
+    Args:
+        results: Results by case.
+        vague: Coefficients that campaign 4's decay does not determine.
+        potential: Amplitude and phase of linear motions by potential flow.
+    """
+    tables = [*errors(results), *means(results), *responses(results, potential)]
+    return "\n".join([*intro(results, vague), *conclusions(results, potential), *tables])
 
 
-def intro(found: dict[str, dict[str, Any]], vague: list[str]) -> list[str]:
+def intro(results: dict[str, dict[str, Any]], vague: list[str]) -> list[str]:
     """What was done."""
-    base = found["tuned"]
+    base = results["tuned"]
     seas = ", ".join(f"{name} {height(s):.2f} ({s['stated']:g})" for name, s in base["seas"].items())
-    periods = {w: ", ".join(f"{p:.1f}" for p in found[n]["periods"]) for w, n in ((FITTED, "fitted"), (TUNED, "tuned"))}
+    periods = {w: ", ".join(f"{p:.1f}" for p in results[n]["periods"]) for w, n in ((FITTED, "fitted"), (TUNED, "tuned"))}
     return [
         "FOCAL campaign 2 (University of Maine, 1:70, full-scale values) is one run of 10 700 s in head waves of three steps "
         "of severity. Nothing is fitted to these seas. Mass, mooring and hydrostatics are those of the campaign's own platform "
@@ -86,10 +81,10 @@ def intro(found: dict[str, dict[str, Any]], vague: list[str]) -> list[str]:
         "third sea from 0.05 Hz.",
         "",
         f"There are two sets of coefficients:\n\n"
-        f"- *{FITTED}*: `jaxhydro calibrate` on focal-c4, the same hull's release in surge on another mooring. That one record "
-        f"determines little, and only `linear_damping.B11` is a result. Near what its platform file starts from stay "
+        f"- *{SETS[FITTED]}*: `jaxhydro calibrate` on focal-c4, the same hull's release in surge on another mooring. That one "
+        f"record determines little, and only `linear_damping.B11` is a result. Near what its platform file starts from stay "
         f"{', '.join(f'`{x}`' for x in vague)}. Natural periods in surge, heave and pitch: {periods[FITTED]} s.\n"
-        f"- *{TUNED}*: Table 1 of the paper this package started from, tuned there to decays in surge, heave and pitch. "
+        f"- *{SETS[TUNED]}*: Table 1 of the paper this package started from, tuned there to decays in surge, heave and pitch. "
         f"Natural periods: {periods[TUNED]} s.\n\n"
         "`MacCamy-Fuchs` replaces 1 + Ca in the wave load on columns. `ramp` keeps 1 + Ca in long waves.",
         "",
@@ -103,24 +98,24 @@ def height(sea: dict[str, Any]) -> float:
     return 4 * sea["deviation"]["wave"][0]
 
 
-def peak(sea: dict[str, Any], channel: str, which: int) -> float:
+def peak(sea: dict[str, Any], channel: str, kind: int) -> float:
     """Period (s) of the highest line of a spectrum between 0.02 and 0.055 Hz."""
-    f, density = np.array(sea["frequency"]), np.array(sea["density"][channel][which])
+    f, density = np.array(sea["frequency"]), np.array(sea["density"][channel][kind])
     inside = (f >= 0.02) & (f <= 0.055)
     return float(1 / f[inside][np.argmax(density[inside])])
 
 
-def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list[float]]]) -> list[str]:
+def conclusions(results: dict[str, dict[str, Any]], potential: dict[str, list[list[float]]]) -> list[str]:
     """What the tables say."""
-    base, seas = found["tuned"], list(found["tuned"]["seas"].values())
+    base, seas = results["tuned"], list(results["tuned"]["seas"].values())
     mid = base["seas"][SEA]
 
     def row(name: str, channel: str, band: str) -> str:
-        return ", ".join(f"{off(s, channel, band):+.0f}" for s in found[name]["seas"].values()) + " %"
+        return ", ".join(f"{off(s, channel, band):+.0f}" for s in results[name]["seas"].values()) + " %"
 
     mean = ", ".join(f"{100 * (s['mean']['surge'][1] / s['mean']['surge'][0] - 1):+.0f}" for s in seas)
     spread = max(
-        abs(found["tuned"]["seas"][k]["response"][c][i][0] / mid["response"][c][i][0] - 1)
+        abs(results["tuned"]["seas"][k]["response"][c][i][0] / mid["response"][c][i][0] - 1)
         for k in base["seas"]
         for c in MOTIONS
         for i in (1, 2, 3)
@@ -128,14 +123,14 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
     ratio = {c: [f"{mid['response'][c][i][3] / mid['response'][c][i][0]:.2f}" for i in (1, 2, 3)] for c in MOTIONS}
     flow = {c: [f"{potential[c][i][0] / mid['response'][c][i][0]:.2f}" for i in (1, 2, 3)] for c in MOTIONS}
     keel = {
-        n: {b: ", ".join(f"{off_keel(s, b):+.0f}" for s in found[n]["seas"].values()) + " %" for b in BANDS}
+        n: {b: ", ".join(f"{off_keel(s, b):+.0f}" for s in results[n]["seas"].values()) + " %" for b in BANDS}
         for n in ("tuned", "fitted")
     }
     arms = [", ".join(f"{s['arms'][i][0]:+.1f}" for s in seas) for i in (0, 1)]
     least = min(arm[1] for s in seas for arm in s["arms"])
     read = ", ".join(f"{potential['keel'][i][0] / mid['response']['surge'][i][0]:.2f}" for i in (1, 2, 3))
     finer = max(
-        abs(off(found["tuned-twelve"]["seas"][k], c, b) - off(base["seas"][k], c, b))
+        abs(off(results["tuned-twelve"]["seas"][k], c, b) - off(base["seas"][k], c, b))
         for k in base["seas"]
         for c in MOTIONS
         for b in BANDS
@@ -159,7 +154,7 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
         f"Surge of potential flow at that height has {read} of the measured amplitude at 0.08, 0.10 and 0.12 Hz. "
         "The rows *at the keel* are simulated surge at that height, all others as the manifest has it. At the keel errors in "
         "surge become "
-        f"{keel['tuned'][BANDS[0]]} (low) and {keel['tuned'][BANDS[1]]} (wave). With {FITTED}'s coefficients they become "
+        f"{keel['tuned'][BANDS[0]]} (low) and {keel['tuned'][BANDS[1]]} (wave). With {SETS[FITTED]}'s coefficients they become "
         f"{keel['fitted'][BANDS[0]]} and {keel['fitted'][BANDS[1]]}.",
         "- **The wave-frequency motion is too small, by much the same factor in every sea.** Errors of energy: surge "
         f"{row('tuned', 'surge', BANDS[1])}, heave {row('tuned', 'heave', BANDS[1])}, pitch "
@@ -168,7 +163,7 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
         f"{amounts(ratio)}. For potential flow it is: {amounts(flow)}. With 1 + Ca for MacCamy-Fuchs surge becomes "
         f"{row('tuned-morison', 'surge', BANDS[1])}.",
         f"- **Low-frequency surge has the wrong growth.** Its errors are {row('tuned', 'surge', BANDS[0])} from the lowest sea "
-        f"to the highest. With order 1 they are {row('tuned-1', 'surge', BANDS[0])}, with {FITTED}'s coefficients "
+        f"to the highest. With order 1 they are {row('tuned-1', 'surge', BANDS[0])}, with {SETS[FITTED]}'s coefficients "
         f"{row('fitted', 'surge', BANDS[0])}. The standard deviation grows with the significant height to the power "
         f"{power(base['seas'], 0):.2f} measured, {power(base['seas'], 1):.2f} simulated. Surge is too little excited, or too "
         "much damped, in the lowest sea, and the reverse in the highest.",
@@ -183,45 +178,45 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
     ]
 
 
-def errors(found: dict[str, dict[str, Any]]) -> list[str]:
+def errors(results: dict[str, dict[str, Any]]) -> list[str]:
     """A table for every motion."""
     lines: list[str] = []
-    seas = found["tuned"]["seas"]
+    seas = results["tuned"]["seas"]
     heads = ["Coefficients", "Order", "Columns", *(f"low, {name}" for name in seas), *(f"wave, {name}" for name in seas)]
     for channel in MOTIONS:
         measured = [number(s["bands"][channel][band][0], 3) for band in BANDS for s in seas.values()]
         rows = [("*measured*", "", f"{UNITS[channel]}²", *measured)]
-        for name, (which, order, diffraction, elements) in CASES.items():
+        for name, (coefficients, order, diffraction, elements) in CASES.items():
             if elements is None:
-                cells = [f"{off(s, channel, band):+.0f} %" for band in BANDS for s in found[name]["seas"].values()]
-                rows.append((which, str(order), WORDS[diffraction], *cells))
+                cells = [f"{off(s, channel, band):+.0f} %" for band in BANDS for s in results[name]["seas"].values()]
+                rows.append((SETS[coefficients], str(order), WORDS[diffraction], *cells))
             if channel == "surge" and name in ("tuned", "fitted"):
-                cells = [f"{off_keel(s, band):+.0f} %" for band in BANDS for s in found[name]["seas"].values()]
-                rows.append((f"{which}, at the keel", str(order), WORDS[diffraction], *cells))
+                cells = [f"{off_keel(s, band):+.0f} %" for band in BANDS for s in results[name]["seas"].values()]
+                rows.append((f"{SETS[coefficients]}, at the keel", str(order), WORDS[diffraction], *cells))
         lines += [f"#### Energy of {channel} in bands", "", table(heads, rows)]
     return lines
 
 
-def means(found: dict[str, dict[str, Any]]) -> list[str]:
+def means(results: dict[str, dict[str, Any]]) -> list[str]:
     """Mean offsets and growth with the sea."""
     names = ("fitted", "fitted-1", "tuned", "tuned-1")
     rows = []
-    for name in found["tuned"]["seas"]:
-        each = [found[n]["seas"][name]["mean"]["surge"] for n in names]
+    for name in results["tuned"]["seas"]:
+        each = [results[n]["seas"][name]["mean"]["surge"] for n in names]
         rows.append((f"mean surge in {name} (m)", number(each[0][0], 3), *(number(x[1], 3) for x in each)))
     for c in MOTIONS:
         for b in BANDS:
-            grown = [f"{power(found[n]['seas'], 1, c, b):.2f}" for n in names]
-            rows.append((f"power of Hs, {c}, {b.split('_')[0]}", f"{power(found['tuned']['seas'], 0, c, b):.2f}", *grown))
-    heads = ("", "measured", *(f"{w}, order {o}" for w in (FITTED, TUNED) for o in (2, 1)))
+            grown = [f"{power(results[n]['seas'], 1, c, b):.2f}" for n in names]
+            rows.append((f"power of Hs, {c}, {b.split('_')[0]}", f"{power(results['tuned']['seas'], 0, c, b):.2f}", *grown))
+    heads = ("", "measured", *(f"{w}, order {o}" for w in SETS.values() for o in (2, 1)))
     return ["#### Mean surge, and how standard deviations in a band grow with the significant height", "", table(heads, rows)]
 
 
-def responses(found: dict[str, dict[str, Any]], potential: dict[str, list[list[float]]]) -> list[str]:
+def responses(results: dict[str, dict[str, Any]], potential: dict[str, list[list[float]]]) -> list[str]:
     """Transfer functions: is the convention right?"""
     rows = []
     for channel in MOTIONS:
-        pairs = [found[name]["seas"][SEA]["response"][channel] for name in ("tuned", "fitted")]
+        pairs = [results[name]["seas"][SEA]["response"][channel] for name in ("tuned", "fitted")]
         for i, f in enumerate(AT):
             (a, p, c, a2, p2, _), (*_, a3, p3, _) = (pair[i] for pair in pairs)
             flow = potential[channel][i]
@@ -236,7 +231,7 @@ def responses(found: dict[str, dict[str, Any]], potential: dict[str, list[list[f
             )
         if channel == "surge":
             for i, f in enumerate(AT):
-                keels = [found[name]["seas"][SEA]["keel"]["response"][i] for name in ("tuned", "fitted")]
+                keels = [results[name]["seas"][SEA]["keel"]["response"][i] for name in ("tuned", "fitted")]
                 amounts, angles = [x[0] for x in keels], [math.degrees(x[1]) for x in keels]
                 flow = potential["keel"][i]
                 rows.append(
@@ -250,7 +245,7 @@ def responses(found: dict[str, dict[str, Any]], potential: dict[str, list[list[f
                         *(f"{x:.0f}" for x in (*angles, flow[1])),
                     )
                 )
-    sets = ("", f" {TUNED}", f" {FITTED}", " potential flow")
+    sets = ("", f" {SETS[TUNED]}", f" {SETS[FITTED]}", " potential flow")
     heads = ("Motion", "f (Hz)", "Coherence", *(f"Amplitude{x}" for x in sets), *(f"Phase{x} (deg)" for x in sets))
     return [
         f"#### Transfer functions from the measured wave in {SEA}, order 2, MacCamy-Fuchs",

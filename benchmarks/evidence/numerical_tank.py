@@ -1,4 +1,4 @@
-"""Section: what `diagnose` says of OpenFAST's potential-flow runs, taken as measurements of a strip model."""
+"""Section: diagnoses of OpenFAST's potential-flow runs, taken as measurements of a strip model."""
 
 from functools import partial
 from pathlib import Path
@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.evidence import common
 from benchmarks.evidence import numerical_tank_runs as runs
 from benchmarks.evidence import numerical_tank_truth as truth
-from benchmarks.evidence.common import Absent, Section, cached, fingerprint, parallel, say, within
+from benchmarks.evidence.common import Section, cached, fingerprint, parallel, require, say, within
 from benchmarks.evidence.numerical_tank_text import shortcomings, words
 
 TITLE = "A numerical wave tank taken as measurements"
@@ -20,15 +21,27 @@ def one(part: str) -> dict[str, Any]:
     return {"declared": runs.declared, "calibrated": runs.calibrated}.get(part, partial(runs.diagnosed, part))()
 
 
+def key() -> str:
+    """Key of the section's results."""
+    files = (*sorted(runs.CAMPAIGN.glob("*.csv")), *sorted(runs.CAMPAIGN.glob("*.yaml")))
+    return fingerprint(Path(runs.__file__), *files)
+
+
+def truth_key(law: dict[str, dict[str, float]]) -> str:
+    """Key of what is known of the tank; `law`, of wave drift, as it was found."""
+    return fingerprint(key(), Path(truth.__file__), repr(law))
+
+
 def run(figures: Path, processes: int) -> Section:
     """The baseline, calibrated; diagnoses of decays and sea, of the decays alone, with tables among candidates."""
-    if not runs.FOLDER.exists() or not runs.HYDRO.exists():
-        raise Absent("OpenFAST's runs and WAMIT's files (../shared/reference) are not on this machine")
-    folder = runs.written()
-    runs.written_with_tables()
-    key = fingerprint(Path(runs.__file__), *sorted(folder.glob("*.csv")), *sorted(folder.glob("*.yaml")))
+    for path in (runs.FOLDER, runs.HYDRO):
+        require(path, "OpenFAST's runs and WAMIT's files (../shared/reference) are not on this machine")
+    if not common.text_only:
+        runs.written()
+        runs.written_with_tables()
+    sources = key()
     results: dict[str, Any] = {}
-    for name, found in parallel(runs.NAME, key, ("declared", "calibrated", "all", "decays", "tables"), one, processes):
+    for name, found in parallel(runs.NAME, sources, ("declared", "calibrated", "all", "decays", "tables"), one, processes):
         results[name] = found
         if "verdict" in found:
             named = [" ".join(filter(None, (x["effect"], x["motion"]))) for x in found["effects"]]
@@ -37,10 +50,11 @@ def run(figures: Path, processes: int) -> Section:
     for x in results["all"]["effects"]:
         if x["effect"] == "wave_drift":
             law[x["motion"]] = {label.split(".")[-1]: value for label, (value, _, _) in x["parameters"].items()}
-    known = cached(runs.NAME, fingerprint(key, Path(truth.__file__), repr(law)), "truth", partial(known_of, law))
+    known = cached(runs.NAME, truth_key(law), "truth", partial(known_of, law))
+    setup = cached(runs.NAME, sources, "setup", runs.setup)
     path = figures / "numerical-tank-surge.png"
     draw(results["all"], path)
-    return Section(TITLE, words(results, known), (path,), shortcomings(results))
+    return Section(TITLE, words(results, known, setup), (path,), shortcomings(results))
 
 
 def known_of(law: dict[str, dict[str, float]]) -> dict[str, Any]:

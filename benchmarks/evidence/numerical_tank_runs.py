@@ -10,7 +10,7 @@ import numpy as np
 import yaml
 
 from benchmarks.evidence.common import CACHE, SHARED
-from benchmarks.evidence.openfast import FOLDER, platform
+from benchmarks.evidence.openfast_runs import FOLDER, platform
 
 NAME = "numerical_tank"
 CAMPAIGN = CACHE / "numerical-tank-campaign"
@@ -33,8 +33,8 @@ def columns(name: str) -> dict[str, np.ndarray]:
     """The table of one of OpenFAST's runs."""
     import pandas as pd
 
-    found = pd.read_csv(FOLDER / name / "out.csv.gz", skiprows=[1]).astype(float)
-    return {key: found[key].to_numpy() for key in found}
+    data = pd.read_csv(FOLDER / name / "out.csv.gz", skiprows=[1]).astype(float)
+    return {key: data[key].to_numpy() for key in data}
 
 
 def setup() -> dict[str, Any]:
@@ -48,7 +48,10 @@ def written() -> Path:
     random = np.random.default_rng(0)
     for name in RUNS:
         table = {key: values[::EVERY] for key, values in columns(name).items()}
-        noisy = {to: table[of] + NOISE[to.split("_")[0]] * random.standard_normal(len(table[of])) for to, of in COLUMNS.items()}
+        noisy = {
+            name: table[column] + NOISE[name.split("_")[0]] * random.standard_normal(len(table[column]))
+            for name, column in COLUMNS.items()
+        }
         series = {"time_s": table["Time"], **noisy, "wave_m": table["Wave1Elev"]}
         head = ",".join(series)
         np.savetxt(CAMPAIGN / f"{name}.csv", np.stack([*series.values()], axis=1), "%.6g", ",", header=head, comments="")
@@ -71,13 +74,13 @@ def written() -> Path:
     }
     (CAMPAIGN / "campaign.yaml").write_text(yaml.safe_dump(manifest, sort_keys=False))
     # ExctnDisp is 0 in the tank's runs: waves do not tell where the platform has gone
-    declared = {**platform(setup()), "name": "VolturnUS-S by strips", "waves_at": "mean"}
-    (CAMPAIGN / "platform.yaml").write_text(yaml.safe_dump(declared, sort_keys=False))
+    document = {**platform(setup()), "name": "VolturnUS-S by strips", "waves_at": "mean"}
+    (CAMPAIGN / "platform.yaml").write_text(yaml.safe_dump(document, sort_keys=False))
     return CAMPAIGN
 
 
 def written_with_tables() -> Path:
-    """The campaign's folder again, WAMIT's tables that the tank's forces are made of beside the platform, as candidates."""
+    """Folder of the same campaign with WAMIT's tables, of which the tank's forces are made, as candidates."""
     WITH_TABLES.mkdir(parents=True, exist_ok=True)
     for path in (*sorted(CAMPAIGN.glob("*.csv")), CAMPAIGN / "campaign.yaml"):
         shutil.copy(path, WITH_TABLES)
@@ -85,38 +88,38 @@ def written_with_tables() -> Path:
     for key, ending in TABLES.items():
         shutil.copy(HYDRO.with_suffix(ending), WITH_TABLES / f"hull{ending}")
         tables[key] = {"file": f"hull{ending}", "use": "candidate"}
-    declared = yaml.safe_load((CAMPAIGN / "platform.yaml").read_text())
-    (WITH_TABLES / "platform.yaml").write_text(yaml.safe_dump(declared | tables, sort_keys=False))
+    document = yaml.safe_load((CAMPAIGN / "platform.yaml").read_text())
+    (WITH_TABLES / "platform.yaml").write_text(yaml.safe_dump(document | tables, sort_keys=False))
     return WITH_TABLES
 
 
-def errors_of(found: Any) -> dict[str, Any]:
-    """Test -> RMSE over the standard deviation by motion, and errors of energies by motion and band."""
+def errors_of(result: Any) -> dict[str, Any]:
+    """Errors by test: RMSE over the standard deviation by motion, and of energies by motion and band."""
     return {
         test.id: {
             "use": test.use,
-            "relative": {one.channel: one.relative for one in test.series},
-            "mean": {one.channel: [float(one.measured.mean()), float(one.simulated.mean())] for one in test.series},
-            "bands": {channel: {band: one.after for band, one in row.items()} for channel, row in test.bands.items()},
+            "relative": {series.channel: series.relative for series in test.series},
+            "mean": {series.channel: [float(series.measured.mean()), float(series.simulated.mean())] for series in test.series},
+            "bands": {channel: {band: series.after for band, series in row.items()} for channel, row in test.bands.items()},
         }
-        for test in found.tests
+        for test in result.tests
     }
 
 
 def errors_in_waves(tests: Any) -> dict[str, Any]:
-    """The same of tests that `compare` simulated."""
+    """Errors of tests that `compare` simulated, as `errors_of` has them."""
     from calibration.residuals.sea_errors import in_bands
 
-    found = {}
+    errors = {}
     for test in tests:
         series = test.fit.series
-        found[test.fit.id] = {
+        errors[test.fit.id] = {
             "use": test.fit.use,
-            "relative": {one.channel: one.relative for one in series},
-            "mean": {one.channel: [float(one.measured.mean()), float(one.simulated.mean())] for one in series},
-            "bands": {k: {b: one.error for b, one in row.items()} for k, row in in_bands(test).items() if k in DECAYS},
+            "relative": {motion.channel: motion.relative for motion in series},
+            "mean": {x.channel: [float(x.measured.mean()), float(x.simulated.mean())] for x in series},
+            "bands": {k: {b: band.error for b, band in row.items()} for k, row in in_bands(test).items() if k in DECAYS},
         }
-    return found
+    return errors
 
 
 def declared() -> dict[str, Any]:
@@ -138,9 +141,9 @@ def declared() -> dict[str, Any]:
         missed = {name: np.asarray(motion[name]) - record.values[name] for name in DECAYS}
         relative = {name: float(np.sqrt((x**2).mean()) / np.std(record.values[name])) for name, x in missed.items()}
         errors[dof] = {"use": record.use, "relative": relative, "bands": {}}
-    found = compare(campaign, model, options_of(campaign))
-    errors |= errors_in_waves(found.tests)
-    return {"errors": errors, "notes": list(found.notes)}
+    comparison = compare(campaign, model, options_of(campaign))
+    errors |= errors_in_waves(comparison.tests)
+    return {"errors": errors, "notes": list(comparison.notes)}
 
 
 def calibrated() -> dict[str, Any]:
@@ -152,7 +155,7 @@ def calibrated() -> dict[str, Any]:
 
     campaign = load_campaign(CAMPAIGN)
     result = calibrate(campaign)
-    errors = {name: one for name, one in errors_of(result).items() if name in DECAYS}
+    errors = {name: error for name, error in errors_of(result).items() if name in DECAYS}
     errors |= errors_in_waves(compare(campaign, result.model, options_of(campaign)).tests)
     return {"errors": errors, "parameters": values_of(result.parameters), "converged": result.converged}
 
@@ -162,58 +165,63 @@ def values_of(parameters: Any) -> dict[str, Any]:
     return {k: [p.value, p.standard_deviation if p.identifiable else None, p.unit] for k, p in parameters.items()}
 
 
-def diagnosed(which: str) -> dict[str, Any]:
-    """What `diagnose` says: of `all`, of the `decays` alone, of which blocks are left out in turn, or of all with `tables`
-    among the candidates. Killed, it goes on."""
+def diagnosed(part: str) -> dict[str, Any]:
+    """Diagnosis of the campaign, which goes on where it was stopped.
+
+    Args:
+        part: `all`; `decays`, of which blocks are left out in turn; or `tables`, all with tables among the candidates.
+    """
     from calibration.campaign.load_campaign import load_campaign
     from calibration.discovery.diagnose import diagnose
     from calibration.results.refusal_sentences import describe_refusal
 
-    campaign = load_campaign(WITH_TABLES if which == "tables" else CAMPAIGN)
-    if which == "decays":
-        campaign = replace(campaign, records=tuple(one for one in campaign.records if one.id in DECAYS))
+    campaign = load_campaign(WITH_TABLES if part == "tables" else CAMPAIGN)
+    if part == "decays":
+        campaign = replace(campaign, records=tuple(record for record in campaign.records if record.id in DECAYS))
 
     def show(now: Any) -> None:
         if now.fraction != shown[0]:
             shown[0] = now.fraction
-            print(f"  {which}: {now.stage}", flush=True)
+            print(f"  {part}: {now.stage}", flush=True)
 
     shown = [-1.0]
-    kept = CAMPAIGN / f".{which}-under-way"
-    result = diagnose(campaign.model, campaign, progress=show, kept=kept)
-    kept.unlink(missing_ok=True)
+    checkpoint = CAMPAIGN / f".{part}-under-way"
+    result = diagnose(campaign.model, campaign, progress=show, kept=checkpoint)
+    checkpoint.unlink(missing_ok=True)
     motions = {}
     for before, after in zip(result.baseline.tests, result.augmented.tests):
         motions[after.id] = {"time": after.time[::SHOWN].tolist()} | {
-            one.channel: [x[::SHOWN].tolist() for x in (one.measured, was.simulated, one.simulated)]
-            for was, one in zip(before.series, after.series)
+            final.channel: [x[::SHOWN].tolist() for x in (final.measured, baseline.simulated, final.simulated)]
+            for baseline, final in zip(before.series, after.series)
         }
     return {
         "verdict": result.verdict,
         "effects": [
             {
-                "effect": one.effect,
-                "motion": one.degree_of_freedom,
-                "parameters": values_of(one.parameters),
-                "score": one.evidence.score,
-                "bic": one.evidence.delta_bic,
-                "held": one.evidence.holdout_gain,
-                "clear": one.evidence.clear,
-                "share": one.share,
-                "alike": list(one.indistinguishable),
-                "in_doubt": one.in_doubt,
+                "effect": effect.effect,
+                "motion": effect.degree_of_freedom,
+                "parameters": values_of(effect.parameters),
+                "score": effect.evidence.score,
+                "bic": effect.evidence.delta_bic,
+                "held": effect.evidence.holdout_gain,
+                "clear": effect.evidence.clear,
+                "share": effect.share,
+                "alike": list(effect.indistinguishable),
+                "in_doubt": effect.in_doubt,
             }
-            for one in result.effects
+            for effect in result.effects
         ],
-        "rejected": [[one.effect, one.degree_of_freedom, describe_refusal(one.reason)] for one in result.rejected],
+        "rejected": [
+            [rejected.effect, rejected.degree_of_freedom, describe_refusal(rejected.reason)] for rejected in result.rejected
+        ],
         "scores": [
             [s.round, s.effect, s.degree_of_freedom, s.gain, s.holdout, s.refitted, s.refitted_holdout] for s in result.scores
         ],
         "before": {"errors": errors_of(result.baseline), "parameters": values_of(result.baseline.parameters)},
         "after": {"errors": errors_of(result.augmented), "parameters": values_of(result.augmented.parameters)},
-        "objective": {use: [one.objective(use) for one in (result.baseline, result.augmented)] for use in ("fit", "holdout")},
-        "anatomy": [[one.test, one.channel, one.rms, one.noise, one.relative, one.words] for one in result.anatomy_before],
-        "latent": [[one.motion, one.words] for one in result.latent],
+        "objective": {use: [fit.objective(use) for fit in (result.baseline, result.augmented)] for use in ("fit", "holdout")},
+        "anatomy": [[x.test, x.channel, x.rms, x.noise, x.relative, x.words] for x in result.anatomy_before],
+        "latent": [[force.motion, force.words] for force in result.latent],
         "unexplained": [result.unexplained_share, result.signature],
         "converged": [result.baseline.converged, result.augmented.converged],
         "notes": list(result.notes),

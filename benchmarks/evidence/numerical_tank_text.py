@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from benchmarks.evidence.common import TRUE, table
-from benchmarks.evidence.numerical_tank_runs import DECAYS, EVERY, FITTED, HALF, HELD, REST, SEA, TRANSIENT, setup
+from benchmarks.evidence.numerical_tank_runs import DECAYS, EVERY, FITTED, HALF, HELD, REST, SEA, TRANSIENT
 from benchmarks.evidence.numerical_tank_truth import REACH
 from calibration.discovery.doubts import MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO
 from calibration.discovery.effects.effect_names import effect_in_words
@@ -153,12 +153,18 @@ def drift_table(known: dict[str, Any]) -> str:
     return table(("Second-order force", *heads), rows)
 
 
-def words(results: dict[str, Any], known: dict[str, Any]) -> str:
-    """The section."""
+def words(results: dict[str, Any], known: dict[str, Any], setup: dict[str, Any]) -> str:
+    """Text of the section.
+
+    Args:
+        results: Results of the calibration and of the diagnoses.
+        known: What is known of the tank.
+        setup: Numbers of the strip model.
+    """
     found, alone = results["all"], results["decays"]
     lines, held = known["mooring"], found["objective"]["holdout"]
     surge = [percent(stages(results)[k][HELD]["relative"]["surge"]) for k in ("calibrated to decays", "with what was found")]
-    stiff, at_rest = (quantity(x, None, "N/m") for x in (setup()["AddCLin"][0][0], lines["static"][0]))
+    stiff, at_rest = (quantity(x, None, "N/m") for x in (setup["AddCLin"][0][0], lines["static"][0]))
     return f"""
 OpenFAST's runs with potential flow are given to `jaxhydro diagnose` as if they were measured.
 

@@ -1,4 +1,4 @@
-"""What OpenFAST's potential-flow runs have that strips on a linear mooring lack, from its own outputs and files."""
+"""Sizes of what OpenFAST's potential-flow runs have and strips on a linear mooring lack."""
 
 import json
 from typing import Any
@@ -34,7 +34,13 @@ NATURAL = {"surge": 131.5, "heave": 20.6, "pitch": 27.4}  # s: at small amplitud
 
 
 def line(distance: float) -> tuple[float, float]:
-    """Horizontal and vertical tension (N) at the fairlead of an elastic catenary partly on the bottom, without friction."""
+    """Horizontal and vertical tension (N) at the fairlead of an elastic catenary.
+
+    A part of the line lies on the bottom, without friction.
+
+    Args:
+        distance: Horizontal distance of anchor and fairlead (m).
+    """
 
     def missed(logs: np.ndarray) -> list[float]:
         h, v = np.exp(logs)
@@ -58,8 +64,14 @@ def pulled(offset: float) -> float:
 
 
 def mooring() -> dict[str, Any]:
-    """Stiffness (N/m), its even quadratic (N/m2) and cubic (N/m3) part: of static lines, and as they act in the surge decay, by
-    mass times acceleration less HydroDyn's force. There they drag through the water, too."""
+    """Stiffness of the lines in surge.
+
+    In the surge decay it is that of mass times acceleration less HydroDyn's force. There the lines drag through the water, too.
+
+    Returns:
+        Stiffness (N/m), its even quadratic (N/m2) and cubic (N/m3) part: `static` and, in the decay, `moving`, where `missed`
+        is the rest over the force. `secant` stiffness by offset (N/m). `tension` at rest (N), here and by OpenFAST.
+    """
     offsets = np.linspace(-REACH, REACH, 41)
     static = np.linalg.lstsq(np.stack([offsets, offsets**2, offsets**3], axis=1), -np.array([pulled(x) for x in offsets]))[0]
     table = columns("decay_surge_nwt")
@@ -69,43 +81,53 @@ def mooring() -> dict[str, Any]:
     step = float(time[1] - time[0])
     force = setup["mass"] * savgol_filter(centre, 41, 3, deriv=2, delta=step) - table["HydroFxi"]
     speed = savgol_filter(surge, 41, 3, deriv=1, delta=step)
-    some = slice(200, -200)
-    terms = np.stack([surge, surge**2, surge**3, speed, speed * np.abs(speed), np.ones(len(surge))], axis=1)[some]
-    moving = np.linalg.lstsq(terms, -force[some])[0]
-    missed = force[some] + terms @ moving
+    inside = slice(200, -200)
+    terms = np.stack([surge, surge**2, surge**3, speed, speed * np.abs(speed), np.ones(len(surge))], axis=1)[inside]
+    moving = np.linalg.lstsq(terms, -force[inside])[0]
+    missed = force[inside] + terms @ moving
     return {
         "static": static.tolist(),
         "moving": moving.tolist(),
-        "missed": float(missed.std() / force[some].std()),
+        "missed": float(missed.std() / force[inside].std()),
         "secant": {f"{x:+g}": -pulled(x) / x for x in (-REACH, -0.1, 0.1, REACH)},
         "tension": [float(np.hypot(*line(ANCHOR - FAIRLEAD))), float(columns(REST)["FAIRTEN1"][-100:].mean())],
     }
 
 
 def radiation() -> dict[str, Any]:
-    """Added mass and radiation damping (SI) of WAMIT by motion, at infinite frequency, the natural one and the waves' peak."""
+    """Added mass and radiation damping (SI) of WAMIT, by motion.
+
+    Frequencies are infinite, the natural one, that of the waves' peak, and that of the largest damping.
+    """
     file = read_wamit(HYDRO, DENSITY)
     assert file.infinite is not None
-    found: dict[str, Any] = {}
+    results: dict[str, Any] = {}
     for motion, dof in DOF.items():
         added, damping = file.added_mass[:, dof - 1, dof - 1], file.damping[:, dof - 1, dof - 1]
-        at = {"natural": 2 * np.pi / NATURAL[motion], "waves": 2 * np.pi / PERIOD}
+        frequencies = {"natural": 2 * np.pi / NATURAL[motion], "waves": 2 * np.pi / PERIOD}
         peak = int(np.argmax(np.where(file.omega < 1.9, damping, 0.0)))
-        found[motion] = {
+        results[motion] = {
             "infinite": float(file.infinite[dof - 1, dof - 1]),
-            "added": {k: float(np.interp(w, file.omega, added)) for k, w in at.items()},
-            "damping": {k: float(np.interp(w, file.omega, damping)) for k, w in at.items()},
+            "added": {k: float(np.interp(w, file.omega, added)) for k, w in frequencies.items()},
+            "damping": {k: float(np.interp(w, file.omega, damping)) for k, w in frequencies.items()},
             "largest": [float(damping[peak]), float(file.omega[peak])],
         }
-    return found
+    return results
 
 
 def drift(law: dict[str, dict[str, float]]) -> dict[str, Any]:
-    """Mean of the second-order force by motion (N, N m), its standard deviation in the motion's low-frequency band, those of a
-    `law` of the squared envelope (motion -> way -> coefficient) on the same waves, and their correlation in the band."""
+    """Second-order force by motion (N, N m), and that of a law on the same waves.
+
+    Args:
+        law: Coefficients of the squared envelope, by motion and way.
+
+    Returns:
+        By motion: `mean` and standard deviation (`slow`) of the force in the motion's low-frequency band; both of the `law`;
+        and their `correlation` in the band.
+    """
     table = columns(SEA)
     time = table["Time"]
-    some = (time >= TRANSIENT) & (time <= END)
+    inside = (time >= TRANSIENT) & (time <= END)
     _, omega, _, amplitude, phase = np.loadtxt(FOLDER / SEA / "components.csv.gz", delimiter=",", skiprows=2, ndmin=2).T
     parts = amplitude * np.exp(1j * phase)
     turning = np.exp(1j * np.outer(time[::5], omega))
@@ -116,30 +138,34 @@ def drift(law: dict[str, dict[str, float]]) -> dict[str, Any]:
         "quadrature": np.imag(hilbert(envelope - envelope.mean())),
         "frequency_weighted": np.real(weighed * np.conj(plain)),
     }
-    found = {}
+    results = {}
     for motion, channel in zip(DECAYS, ("B1WvsF2xi", "B1WvsF2zi", "B1WvsM2yi")):
-        force = table[channel][::5][some[::5]]
+        force = table[channel][::5][inside[::5]]
         mine = {k: float(v) for k, v in law.get(motion, {}).items()}
-        made = sum((value * ways[way] for way, value in mine.items()), np.zeros(len(envelope)))[some[::5]]
+        made = sum((value * ways[way] for way, value in mine.items()), np.zeros(len(envelope)))[inside[::5]]
         slow, of_law = (within(x, *BANDS[motion], float(time[5] - time[0])) for x in (force, made))
-        found[motion] = {
+        results[motion] = {
             "mean": float(force.mean()),
             "slow": float(slow.std()),
             "law": [float(made.mean()), float(of_law.std())] if mine else None,
             "correlation": float(np.corrcoef(slow, of_law)[0, 1]) if mine else None,
         }
-    return found
+    return results
 
 
 def quadratic() -> dict[str, float]:
-    """Quadratic damping (N s2/m2, N m s2/rad2) by the platform's own velocity; no water's velocity goes into it."""
+    """Quadratic damping (N s2/m2, N m s2/rad2) by the platform's own velocity, not by the water's."""
     matrix = json.loads((FOLDER / SEA / "setup.json").read_text())["AddBQuad"]
     return {motion: float(matrix[dof - 1][dof - 1]) for motion, dof in DOF.items()}
 
 
 def excitation() -> dict[str, list[float]]:
-    """First-order excitation at the waves' peak by motion (N/m, N m/m): amplitude by strips without drag on the platform held
-    upright, the same by WAMIT, and how far WAMIT's is ahead (rad)."""
+    """First-order excitation at the waves' peak, by motion.
+
+    Returns:
+        Amplitude (N/m, N m/m) by strips without drag on the platform held upright; that of WAMIT; and the phase by which
+        WAMIT's is ahead (rad).
+    """
     import jax.numpy as jnp
 
     import jaxhydro as jh
@@ -147,17 +173,17 @@ def excitation() -> dict[str, list[float]]:
     from jaxhydro.waves.components import PlaneWaves, components
 
     rows = [row for row in np.loadtxt(HYDRO.with_suffix(".3")) if abs(row[1]) < 1e-6]
-    period = min({row[0] for row in rows}, key=lambda one: abs(one - PERIOD))
+    period = min({row[0] for row in rows}, key=lambda period: abs(period - PERIOD))
     height = 0.05
-    one = components(jnp.array([height]), jnp.array([2 * np.pi / period]), WATER, phase=jnp.zeros(1))
+    wave = components(jnp.array([height]), jnp.array([2 * np.pi / period]), WATER, phase=jnp.zeros(1))
     model = jh.build(jh.Platform.model_validate(platform(setup())))
     model = model.with_values({label: 0.0 for label in model.values if ".Cd_" in label})
     times = period * np.arange(64) / 64
-    loads = np.array(_loads(model, jh.WaveSea(PlaneWaves.free(one, WATER), WATER, 0.0, "none"), jnp.asarray(times)))
+    loads = np.array(_loads(model, jh.WaveSea(PlaneWaves.free(wave, WATER), WATER, 0.0, "none"), jnp.asarray(times)))
     turning = np.exp(-2j * np.pi * times / period)
-    found = {}
+    results = {}
     for motion, dof in DOF.items():
         mine = 2 * (loads[:, dof - 1] * turning).mean() / height
         theirs = DENSITY * GRAVITY * next(complex(row[5], row[6]) for row in rows if (row[0], row[2]) == (period, dof))
-        found[motion] = [float(abs(mine)), float(abs(theirs)), float(np.angle(theirs / mine))]
-    return found
+        results[motion] = [float(abs(mine)), float(abs(theirs)), float(np.angle(theirs / mine))]
+    return results

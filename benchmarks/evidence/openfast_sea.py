@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 import jaxhydro as jh
-from benchmarks.evidence.openfast import FOLDER, platform
+from benchmarks.evidence.openfast_runs import FOLDER, platform
 from jaxhydro.waves import SupportSea, preparation, second_order
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.flow import Cylinders, Flow
@@ -83,7 +83,10 @@ def model(run: Run, *, centre: bool = False, nodes: bool = False, **changes: Any
 
 
 def _nodes(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Trapezoidal rule: where the package takes 8 strips below still water and 9 along a pontoon, OpenFAST has 8 and 10."""
+    """Trapezoidal rule of OpenFAST's number of strips.
+
+    Where the package takes 8 strips below still water and 9 along a pontoon, OpenFAST has 8 and 10.
+    """
     count = {8: 8, 9: 10}[order]
     weight = np.full(count + 1, 2 / count)
     weight[[0, -1]] /= 2
@@ -100,18 +103,21 @@ class OpenFASTSea(jh.IrregularSea):
 
     def prepared(self, *arguments: Any, **options: Any) -> Any:
         with _without_set_down():
-            found = super().prepared(*arguments, **options)
-        return GridSea(found, self.grid) if self.grid else found
+            sea = super().prepared(*arguments, **options)
+        return GridSea(sea, self.grid) if self.grid else sea
 
 
 @contextlib.contextmanager
 def _without_set_down() -> Iterator[None]:
-    """Second order without the differences of components and themselves: such pairs are pointed to waves that bind nothing."""
+    """Second order without the differences of components and themselves.
+
+    Such pairs are pointed to waves that bind nothing.
+    """
     tiles, spectrum = second_order._tiles, preparation._spectrum.__wrapped__
 
     def fewer(n: int, *others: Any) -> Any:
-        found = tiles(n, *others)
-        return eqx.tree_at(lambda t: t.i, found, jnp.where((found.sign < 0) & (found.harmonic == 0), n, found.i))
+        pairs = tiles(n, *others)
+        return eqx.tree_at(lambda t: t.i, pairs, jnp.where((pairs.sign < 0) & (pairs.harmonic == 0), n, pairs.i))
 
     anew = eqx.filter_jit(lambda *a: spectrum(*a))  # nothing that was traced with all pairs
     with mock.patch.object(second_order, "_tiles", fewer), mock.patch.object(preparation, "_spectrum", anew):
@@ -137,28 +143,28 @@ class GridSea(jh.AbstractSea):
         return self.inner.half
 
     def _around(self, points: jax.Array) -> tuple[jax.Array, list[jax.Array]]:
-        place = points[0] / self.spacing
-        low = jnp.floor(place)
-        s = place - low
+        position = points[0] / self.spacing
+        low = jnp.floor(position)
+        s = position - low
         inner = [1 + s**2 * (1.5 * s - 2.5), 0.5 * s * (1 + s * (4 - 3 * s))]
         weights = [0.5 * s * (s * (2 - s) - 1), *inner, 0.5 * s**2 * (s - 1)]
-        at = [jnp.concatenate([((low + i) * self.spacing)[None], points[1:]]) for i in (-1, 0, 1, 2)]
-        return jnp.concatenate(at, axis=1), weights
+        neighbours = [jnp.concatenate([((low + i) * self.spacing)[None], points[1:]]) for i in (-1, 0, 1, 2)]
+        return jnp.concatenate(neighbours, axis=1), weights
 
     def _mixed(self, field: jax.Array, weights: list[jax.Array]) -> jax.Array:
         return sum(part * weight for part, weight in zip(jnp.split(field, 4, axis=-1), weights, strict=True))
 
     def elevation(self, time: jax.Array, points: jax.Array) -> jax.Array:
-        at, weights = self._around(points)
-        return self._mixed(self.inner.elevation(time, at), weights)
+        neighbours, weights = self._around(points)
+        return self._mixed(self.inner.elevation(time, neighbours), weights)
 
     def surface(self, time: jax.Array, points: jax.Array) -> jax.Array | None:
         return None if self.inner.stretching == "none" else self.elevation(time, points)
 
     def flow(self, time: jax.Array, points: jax.Array, cylinders: Cylinders | None = None) -> Flow:
-        at, weights = self._around(points)
+        neighbours, weights = self._around(points)
         four = None if cylinders is None else dataclasses.replace(cylinders, radius_index=cylinders.radius_index * 4)
-        return jax.tree.map(lambda field: self._mixed(field, weights), self.inner.flow(time, at, four).earth())
+        return jax.tree.map(lambda field: self._mixed(field, weights), self.inner.flow(time, neighbours, four).earth())
 
 
 def sea(run: Run, grid: bool = False) -> OpenFASTSea:
@@ -176,8 +182,8 @@ def plain(run: Run, order: int = 2, stretching: str = "vertical") -> jh.Irregula
 def direct(run: Run) -> jh.WaveSea:
     """The few components of its `comp` sea and their pairs, summed."""
     present = np.flatnonzero(np.asarray(run.waves.amplitude))
-    of = run.waves
-    few = components(of.amplitude[present], of.omega[present], WATER, phase=of.phase[present])
+    waves = run.waves
+    few = components(waves.amplitude[present], waves.omega[present], WATER, phase=waves.phase[present])
     bound = second_order.bound_waves(few, WATER, set_down=False) if run.case.order == 2 else None
     return jh.WaveSea(PlaneWaves.free(few, WATER), WATER, 0.0, run.case.stretching, bound)
 
@@ -192,18 +198,22 @@ def _loads(held: jh.Model, waves: jh.AbstractSea, times: jax.Array) -> jax.Array
 
 
 def loads(run: Run, every: int = 2, waves: jh.AbstractSea | None = None, **options: Any) -> dict[str, dict[str, float]]:
-    """Forces on the platform held upright against OpenFAST's: rms and mean of the difference over its deviation, and slope."""
-    found = np.array(_loads(model(run, **options), direct(run) if waves is None else waves, run.table["Time"][::every]))
-    found[:, 2] += run.setup["mass"] * WATER.gravity  # HydroDyn's loads are without the weight
+    """Forces on the platform held upright against OpenFAST's.
+
+    Returns:
+        By force: `rms` and `mean` of the difference over the deviation of OpenFAST's force, and the `slope`.
+    """
+    forces = np.array(_loads(model(run, **options), direct(run) if waves is None else waves, run.table["Time"][::every]))
+    forces[:, 2] += run.setup["mass"] * WATER.gravity  # HydroDyn's loads are without the weight
     result = {}
     for name, (i, channel) in LOADS.items():
         series = run.table[channel][::every]
-        missed = found[:, i] - series
+        missed = forces[:, i] - series
         size = series.std()
         result[name] = {
             "rms": float(np.sqrt((missed**2).mean()) / size),
             "mean": float(missed.mean() / size),
-            "slope": float(np.polyfit(series, found[:, i], 1)[0]),
+            "slope": float(np.polyfit(series, forces[:, i], 1)[0]),
         }
     return result
 
@@ -212,8 +222,8 @@ def motion(run: Run, waves: jh.AbstractSea, until: float = np.inf, step: float |
     """Times (s) and motions (m, deg) from rest at the origin, at every second of OpenFAST's times."""
     times = run.table["Time"][::2]
     times = times[times <= until]
-    found = jh.simulate(model(run, **options), times, waves, position=jnp.zeros(6), step=step)
-    return times, {dof: np.asarray(found[dof]) * (1 if dof in jh.DOFS[:3] else 180 / np.pi) for dof in jh.DOFS}
+    motions = jh.simulate(model(run, **options), times, waves, position=jnp.zeros(6), step=step)
+    return times, {dof: np.asarray(motions[dof]) * (1 if dof in jh.DOFS[:3] else 180 / np.pi) for dof in jh.DOFS}
 
 
 def missed(run: Run, times: np.ndarray, motions: dict[str, np.ndarray]) -> dict[str, float]:

@@ -37,11 +37,15 @@ def of_seed(name: str) -> dict[str, Any]:
     return calibrated(str(folder))
 
 
+def key() -> str:
+    """Key of the section's results."""
+    return fingerprint(*(ROOT / "benchmarks" / name for name in ("make_demo_campaign.py", "reference_model.py")))
+
+
 def run(seeds: int, processes: int, figures: Path) -> Section:
     """Twenty campaigns that differ in their sensors' noise."""
-    key = fingerprint(*(ROOT / "benchmarks" / name for name in ("make_demo_campaign.py", "reference_model.py")))
     results = {}
-    for name, result in parallel("seeds", key, [f"seed-{i + 1}" for i in range(seeds)], of_seed, processes):
+    for name, result in parallel("seeds", key(), [f"seed-{i + 1}" for i in range(seeds)], of_seed, processes):
         results[name] = result
         say(
             f"  {name}: J {result['objective']:.5f}, {result['iterations']} iterations, {result['seconds']:.0f} s "

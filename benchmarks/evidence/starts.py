@@ -53,11 +53,15 @@ def of_start(name: str) -> dict[str, Any]:
     }
 
 
+def key() -> str:
+    """Key of the section's results."""
+    return fingerprint(DEMO, f"{FACTOR} {OFF} {SEED}")
+
+
 def outcomes(count: int = 20, processes: int = 2) -> list[dict[str, Any]]:
     """What all starts led to, from the cache where it has been worked out."""
-    key = fingerprint(DEMO, f"{FACTOR} {OFF} {SEED}")
     names, found = [f"{i + 1}-of-{count}" for i in range(count)], {}
-    for name, one in parallel("starts", key, names, of_start, processes):
+    for name, one in parallel("starts", key(), names, of_start, processes):
         found[name] = one
         say(f"  start {name}: J {one['objective']:.6f}, {one['iterations']} iterations, {one['seconds']:.0f} s")
     return [found[name] for name in names if name in found]

@@ -1,16 +1,20 @@
-"""The page of the study: the paper's four cases against the ratios that its Table 2 implies between them."""
+"""Text of the section on the paper's four cases."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence import study_figures, study_reasons
-from benchmarks.evidence.common import ROOT, Section, cached, fingerprint, keep, say, table
-from benchmarks.evidence.study import CASES, COLUMNS, CUTOFF, PLATFORM, SEAS, SEEDS, of_seed
-from benchmarks.evidence.study_words import OPENFAST, PAIRS, implied, words
+from benchmarks.evidence.common import table
+from benchmarks.evidence.study_reasons_text import OPENFAST, PAIRS, implied
+from benchmarks.evidence.study_reasons_text import words as reasons
+from benchmarks.evidence.study_runs import COLUMNS, SEAS, SEEDS
 
-TITLE = "The paper's four cases in irregular seas"
+NAMES = {
+    "1": "first order",
+    "2": "second order",
+    "3": "and stretching, MacCamy-Fuchs",
+    "4": "and pontoon elements",
+}
 NEAR = 0.03  # of a ratio, within which it is the paper's
 SHORT = {"low_frequency": "LF", "wave_frequency": "WF"}
 INTRO = """\
@@ -41,21 +45,31 @@ cases. MacCamy-Fuchs is without its lag and not on the centre column.
 """
 
 
-def run(figures: Path) -> Section:
-    """Four cases, two seas, ten seeds; what explains the differences; pontoon elements."""
-    here = Path(__file__).parent
-    key = fingerprint(ROOT / "jaxhydro" / "platforms" / f"{PLATFORM}.yaml", here / "study.py", here / "study_reasons.py")
-    found: dict[str, list[dict[str, Any]]] = {}
-    for sea in SEAS:
-        found[sea] = []
-        for seed in range(1, SEEDS + 1):
-            name = f"{sea}-{seed}"
-            result = cached("study", key, name)
-            if result is None:
-                result = keep("study", key, name, of_seed(sea, seed))
-                say(f"  {name}")
-            found[sea].append(result)
-    return conclude(found, *study_reasons.run(key), figures)
+def words(results: dict[str, list[dict[str, Any]]], variants: dict[str, Any], elements: dict[str, Any]) -> str:
+    """Text of the section.
+
+    Args:
+        results: Results of the seeds, by sea.
+        variants: Band integrals with one thing changed, by variant.
+        elements: Band integrals with the pontoons in more elements.
+    """
+    of_bands = "\n".join(
+        f"Hs {SEAS[sea][0]} m, Tp {SEAS[sea][1]} s:\n\n{band_table(of_sea)}" for sea, of_sea in results.items()
+    )
+    return "\n".join([INTRO, of_bands, RATIOS, ratio_table(results)[0], reasons(variants, elements)])
+
+
+def shortcomings(results: dict[str, list[dict[str, Any]]]) -> tuple[str, ...]:
+    """Ratios of the paper that are not reached."""
+    outside = ratio_table(results)[1]
+    if not outside:
+        return ()
+    count = sum(len(ratios_off) for ratios_off in outside.values())
+    each = ". ".join(f"Of {pair}: {', '.join(ratios_off)}" for pair, ratios_off in outside.items())
+    return (
+        f"of the {len(PAIRS) * len(COLUMNS)} ratios between the paper's cases {count} are more than {100 * NEAR:.0f} % off "
+        f"and reached by none of {SEEDS} seeds. They are listed with the paper's in brackets. {each}",
+    )
 
 
 def values(results: list[dict[str, Any]], case: str) -> np.ndarray:
@@ -66,16 +80,20 @@ def values(results: list[dict[str, Any]], case: str) -> np.ndarray:
 def band_table(results: list[dict[str, Any]]) -> str:
     """Mean and spread over the seeds by case."""
     rows = []
-    for name, case in CASES.items():
+    for name, label in NAMES.items():
         of_case = values(results, name)
         mean, spread = of_case.mean(axis=0), of_case.std(axis=0, ddof=1)
         cells = [f"{m:.3g} ± {100 * s / m:.0f} %" for m, s in zip(mean[:-1], spread[:-1], strict=True)]
-        rows.append((f"{name} {case.name}", *cells, f"{mean[-1]:.2f}"))
+        rows.append((f"{name} {label}", *cells, f"{mean[-1]:.2f}"))
     return table(("Case", *(f"{dof} {SHORT[band]}" for dof, band in COLUMNS), "mean surge (m)"), rows)
 
 
-def ratio_table(found: dict[str, list[dict[str, Any]]]) -> tuple[str, dict[str, list[str]]]:
-    """Ratios between cases: the paper's, ours, OpenFAST's; and by pair of cases those that no seed of ours reaches."""
+def ratio_table(results: dict[str, list[dict[str, Any]]]) -> tuple[str, dict[str, list[str]]]:
+    """Ratios between cases.
+
+    Returns:
+        Table of the paper's, ours and OpenFAST's ratios. Ratios of the paper that no seed of ours reaches, by pair of cases.
+    """
     rows: list[tuple[str, ...]] = []
     outside: dict[str, list[str]] = {}
     for over, under in PAIRS:
@@ -83,37 +101,14 @@ def ratio_table(found: dict[str, list[dict[str, Any]]]) -> tuple[str, dict[str, 
             paper, least, most = implied(over, under, column)
             cells = []
             for sea in SEAS:
-                ratio = values(found[sea], over)[:, column] / values(found[sea], under)[:, column]
-                mean = values(found[sea], over)[:, column].mean() / values(found[sea], under)[:, column].mean()
+                ratio = values(results[sea], over)[:, column] / values(results[sea], under)[:, column]
+                mean = values(results[sea], over)[:, column].mean() / values(results[sea], under)[:, column].mean()
                 cells.append(f"{mean:.3g} ({ratio.min():.3g}–{ratio.max():.3g})")
                 apart = abs(mean / paper - 1) > NEAR and (ratio.max() < least or ratio.min() > most)
                 if sea == "moderate" and apart:
                     outside.setdefault(f"case {over} over {under}", []).append(f"{dof} {SHORT[band]} {mean:.2g} ({paper:.2g})")
-            other = OPENFAST[over][column] / OPENFAST[under][column]
+            openfast = OPENFAST[over][column] / OPENFAST[under][column]
             label = f"{dof} {SHORT[band]}, case {over} over {under}"
-            rows.append((label, f"{paper:.3g} ({least:.3g}–{most:.3g})", cells[0], f"{other:.3g}", cells[1]))
+            rows.append((label, f"{paper:.3g} ({least:.3g}–{most:.3g})", cells[0], f"{openfast:.3g}", cells[1]))
     head = ("Ratio", "Paper", "jaxhydro", "OpenFAST", "jaxhydro, Hs 8.1 m")
     return table(head, rows), outside
-
-
-def conclude(found: dict[str, list[dict[str, Any]]], variants: dict[str, Any], cut: dict[str, Any], figures: Path) -> Section:
-    """Tables, words and figures."""
-    ratios, outside = ratio_table(found)
-    of_bands = "\n".join(
-        f"Hs {SEAS[sea][0]} m, Tp {SEAS[sea][1]} s:\n\n{band_table(results)}" for sea, results in found.items()
-    )
-    text = "\n".join([INTRO, of_bands, RATIOS, ratios, words(variants, cut)])
-    drawn = (
-        study_figures.elevation(found, SEAS, CUTOFF, figures / "study-elevation.png"),
-        study_figures.densities(found, SEAS, figures / "study-spectra.png"),
-        study_figures.bars(found, SEAS, figures / "study-bands.png"),
-    )
-    short: tuple[str, ...] = ()
-    if outside:
-        count = sum(len(ratios_off) for ratios_off in outside.values())
-        each = ". ".join(f"Of {pair}: {', '.join(ratios_off)}" for pair, ratios_off in outside.items())
-        short = (
-            f"of the {len(PAIRS) * len(COLUMNS)} ratios between the paper's cases {count} are more than {100 * NEAR:.0f} % off "
-            f"and reached by none of {SEEDS} seeds. They are listed with the paper's in brackets. {each}",
-        )
-    return Section(TITLE, text, drawn, short)

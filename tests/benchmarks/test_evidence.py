@@ -3,11 +3,13 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from benchmarks import validate
-from benchmarks.evidence import common, hulls
+from benchmarks.evidence import common, hulls, hulls_text, measured_runs
 from benchmarks.evidence.common import Absent, Section, cached, keep
+from calibration import result as calibration_result
 
 
 @pytest.fixture(autouse=True)
@@ -33,6 +35,34 @@ def test_results_are_kept_for_the_text(folders: Path, monkeypatch: pytest.Monkey
     assert common.stale == []
     with pytest.raises(Absent, match=r"no result 'three' .*--only a` runs it"):
         cached("a", "of today", "three", not_run)
+
+
+def test_the_order_within_a_result_stays(folders: Path) -> None:
+    """It is that of the rows of tables."""
+    keep("a", "sources", "two", {"surge": 1, "heave": 2})
+    keep("a", "sources", "one", {"b": 1, "a": 2})
+    results = common.evidence("a")
+    assert list(results) == ["one", "two"] and list(results["one"]["result"]) == ["b", "a"]
+
+
+def test_data_is_required_of_a_run_only(folders: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A text of kept results is made where the data of the run is not."""
+    common.require(folders, "not raised")
+    with pytest.raises(Absent, match="no records"):
+        common.require(folders / "records", "no records")
+    monkeypatch.setattr(common, "text_only", True)
+    common.require(folders / "records", "no records")
+
+
+def test_motions_of_a_decay_are_kept_for_its_figures() -> None:
+    """As JSON, from which the test of the calibration is made again."""
+    time = np.linspace(0.0, 1.0, 5)
+    series = calibration_result.Series("roll", np.sin(time), np.cos(time), 0.1, 0.01, True)
+    test = calibration_result.TestFit("roll-1", "fit", "decay", "roll", time, (series,), {"roll": 2 * time}, "roll.csv")
+    again = measured_runs.test_of(json.loads(json.dumps(measured_runs.motions_of(test))))
+    assert (again.id, again.use, again.kind, again.degree_of_freedom) == ("roll-1", "fit", "decay", "roll")
+    assert again.main.rmse == series.rmse and again.main.noise == series.noise and again.main.scored
+    assert np.array_equal(again.time, time) and np.array_equal(again.start["roll"], 2 * time)
 
 
 def test_results_of_a_clone_are_enough(folders: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -67,6 +97,6 @@ def test_the_text_of_hulls_is_made_of_results() -> None:
     known = json.loads((Path(common.ROOT) / "docs" / "evidence" / "hulls.json").read_text())
     results = {name: one["result"] for name, one in known.items()}
     panels = json.loads(hulls.POTENTIAL.read_text("utf-8"))
-    found = hulls.text(results, results["variants"], panels)
+    text = hulls_text.words(results, results["variants"], panels)
     page = " ".join((Path(common.ROOT) / "docs" / "validation.md").read_text().split())
-    assert " ".join(validate.wrapped(found.text.strip()).split()) in page
+    assert " ".join(validate.wrapped(text.strip()).split()) in page

@@ -6,9 +6,10 @@ import math
 import pytest
 
 from benchmarks import validate
-from benchmarks.evidence import mooring_lines
+from benchmarks.evidence import mooring_lines_runs, mooring_lines_text
 from benchmarks.evidence.common import EVIDENCE, ROOT
-from benchmarks.evidence.mooring_lines import BED, GOAL, MOORDYN, OFFSETS, RUNS, SEGMENTS, differences, of_moordyn
+from benchmarks.evidence.mooring_lines_runs import BED, MOORDYN, OFFSETS, RUNS, SEGMENTS
+from benchmarks.evidence.mooring_lines_text import GOAL, differences, of_moordyn
 from benchmarks.moordyn_statics import exported, with_numerics
 
 RUN = {
@@ -22,14 +23,14 @@ RUN = {
 
 def test_the_section_is_made_of_the_results() -> None:
     results = json.loads((EVIDENCE / "mooring_lines.json").read_text("utf-8"))["statics"]["result"]
-    found = mooring_lines.text(results, json.loads(MOORDYN.read_text("utf-8")))
+    text = mooring_lines_text.words(results, json.loads(MOORDYN.read_text("utf-8")))
     page = " ".join((ROOT / "docs" / "validation.md").read_text("utf-8").split())
-    assert " ".join(validate.wrapped(found.text.strip()).split()) in page
+    assert " ".join(validate.wrapped(text.strip()).split()) in page
 
 
 def test_lines_agree_with_moordyn() -> None:
     """As the package is today, with the finest segments of all offsets."""
-    results = mooring_lines.worked_out()
+    results = mooring_lines_runs.worked_out()
     runs = {(r["offset"], r["segments"], r["bed_stiffness"]): r for r in json.loads(MOORDYN.read_text("utf-8"))}
     assert set(runs) == set(RUNS)
     for ours in results["offsets"]:

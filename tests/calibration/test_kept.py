@@ -338,7 +338,7 @@ def test_a_diagnosis_that_was_killed_ends_as_one_run_does(tmp_path):
     path = tmp_path / "kept"
     assert not told and told_in(campaign, path, "round 2")[0] is None
     found, seen, told = told_in(campaign, path)
-    assert not told and not any(stage.startswith(("calibrating", "round 1")) for stage in seen)
+    assert not told and not any(stage.startswith(("fitting the baseline", "round 1")) for stage in seen)
     written = []
     for name, one in (("whole", whole), ("resumed", found)):
         write_diagnosis(dataclasses.replace(one, seconds=0.0), tmp_path / name, figures=False)

@@ -1,4 +1,4 @@
-"""Why the study's ratios between cases are not the paper's: one thing changed at a time, and pontoons in more elements."""
+"""The study's cases simulated with one thing changed at a time, and with pontoons in more elements."""
 
 from collections.abc import Callable
 from functools import cache
@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from benchmarks.evidence import study
+from benchmarks.evidence import common, study_runs
 from benchmarks.evidence.common import SHARED, cached, keep, say
 
 SEA, SEEDS = "moderate", 5
@@ -16,8 +16,16 @@ FOCAL = SHARED / "measured" / "focal-c2" / "platform.yaml"
 
 
 class Variant(NamedTuple):
-    """What is changed: the platform file, the model, the sea's peak enhancement, whether the flow is that at the rest
-    position; and which cases it is of."""
+    """One change of the study's cases.
+
+    Attributes:
+        name: Short name.
+        platform: Change of the platform file.
+        model: Conventions of the model that are replaced.
+        gamma: Peak enhancement of the sea, or None for the default.
+        at_rest: Whether the flow is that at the rest position of the strips.
+        cases: Cases that the change applies to.
+    """
 
     name: str
     platform: Callable[[Any], Any] = lambda platform: platform
@@ -38,10 +46,10 @@ def focal(platform: Any) -> Any:
     from jaxhydro import load_platform
     from jaxhydro.platform.convergence import with_elements
 
-    kept = ("coefficients", "linear_damping", "wetting", "diffraction")
-    other = load_platform(FOCAL).model_copy(update={key: getattr(platform, key) for key in kept})
+    keys = ("coefficients", "linear_damping", "wetting", "diffraction")
+    with_body = load_platform(FOCAL).model_copy(update={key: getattr(platform, key) for key in keys})
     pontoon = next(member for member in platform.members if member.group == "pontoon")
-    return with_elements(other, "pontoon", pontoon.elements, pontoon.points)
+    return with_elements(with_body, "pontoon", pontoon.elements, pontoon.points)
 
 
 def fine(platform: Any) -> Any:
@@ -56,28 +64,31 @@ def changed(key: str, value: str) -> Callable[[Any], Any]:
 
 
 VARIANTS = (
-    Variant("as above"),
-    Variant("pontoons of many strips", fine),
-    Variant(f"lines {STIFFER:g} times as stiff", stiffer),
-    Variant("body, lines and water (350 m) of FOCAL campaign 2", focal),
-    Variant("peak enhancement 3.3", gamma=3.3),
-    Variant("strips' directions of the platform at rest", model={"directions": "earth"}),
-    Variant("flow at the rest position", at_rest=True, cases="12"),
-    Variant("both of these", model={"directions": "earth"}, at_rest=True, cases="12"),
-    Variant("displaced hull under a flat surface", changed("wetting", "instantaneous"), cases="12"),
-    Variant("drag of each component", changed("drag_speed", "component")),
-    Variant("MacCamy-Fuchs without its lag", model={"lag": False}, cases="3"),
-    Variant("bound waves not diffracted", model={"bound": False}, cases="3"),
-    Variant("neither, as OpenFAST", model={"lag": False, "bound": False}, cases="3"),
-    Variant("tuned Ca kept in long waves", changed("diffraction", "ramp"), cases="3"),
-    Variant("stretching without MacCamy-Fuchs", changed("diffraction", "none"), cases="3"),
-    Variant("MacCamy-Fuchs without stretching", changed("wetting", "mean"), cases="3"),
+    Variant("base"),
+    Variant("many", fine),
+    Variant("lines", stiffer),
+    Variant("focal", focal),
+    Variant("sharp", gamma=3.3),
+    Variant("still", model={"directions": "earth"}),
+    Variant("rest", at_rest=True, cases="12"),
+    Variant("both", model={"directions": "earth"}, at_rest=True, cases="12"),
+    Variant("flat", changed("wetting", "instantaneous"), cases="12"),
+    Variant("component", changed("drag_speed", "component")),
+    Variant("no lag", model={"lag": False}, cases="3"),
+    Variant("free", model={"bound": False}, cases="3"),
+    Variant("neither", model={"lag": False, "bound": False}, cases="3"),
+    Variant("tuned", changed("diffraction", "ramp"), cases="3"),
+    Variant("plain", changed("diffraction", "none"), cases="3"),
+    Variant("unstretched", changed("wetting", "mean"), cases="3"),
 )
 
 
 @cache
 def at_rest_parts() -> tuple[Any, Any]:
-    """A sea whose flow is that at given points wherever the strips are, and motion in it: made once, compiled once."""
+    """A sea whose flow is that at given points wherever the strips are, and motion in it.
+
+    Both are made once, so that they are compiled once.
+    """
     import equinox as eqx
     import jax.numpy as jnp
 
@@ -122,24 +133,24 @@ def at_rest(model: Any, sea: Any, times: np.ndarray, step: float = 0.25) -> np.n
 
 
 def of_variant(variant: Variant) -> dict[str, Any]:
-    """Mean over the seeds of the band integrals (and mean surge) of its cases, and natural periods in still water."""
+    """Band integrals and mean surge of a variant's cases, means over the seeds; natural periods (s)."""
     import dataclasses
 
     from jaxhydro import build, load_platform, natural_modes, simulate
 
     result: dict[str, Any] = {}
     for name in variant.cases:
-        case = study.CASES[name]
-        platform = variant.platform(study.rounded(load_platform(study.PLATFORM), case))
+        case = study_runs.CASES[name]
+        platform = variant.platform(study_runs.rounded(load_platform(study_runs.PLATFORM), case))
         model = dataclasses.replace(build(platform), **variant.model)
         still = name == "3" and platform.wetting == "mean"
         rows = []
         for seed in range(1, SEEDS + 1):
             stretching = "none" if still else case.stretching
-            sea = study.sea_of(SEA, seed, model.environment, case.order, stretching, variant.gamma)
-            times = study.times()
+            sea = study_runs.sea_of(SEA, seed, model.environment, case.order, stretching, variant.gamma)
+            times = study_runs.times()
             position = at_rest(model, sea, times) if variant.at_rest else np.asarray(simulate(model, times, sea).position)
-            rows.append(study.integrals(position, SEA))
+            rows.append(study_runs.integrals(position, SEA))
         result[name] = np.mean(rows, axis=0).tolist()
         result["periods"] = [natural_modes(model).of(dof) for dof in ("surge", "heave", "pitch")]
     return result
@@ -149,38 +160,38 @@ def elements() -> dict[str, Any]:
     """Case 3 with the pontoons in more elements of one and of two points, one seed."""
     from jaxhydro import convergence, load_platform
 
-    platform = study.rounded(load_platform(study.PLATFORM), study.CASES["3"])
-    sea = study.sea_of(SEA, 1, study.model_of("3").environment, 2, "vertical")
-    found = {}
+    platform = study_runs.rounded(load_platform(study_runs.PLATFORM), study_runs.CASES["3"])
+    sea = study_runs.sea_of(SEA, 1, study_runs.model_of("3").environment, 2, "vertical")
+    results = {}
     for points in (1, 2):
-        one = convergence(
+        study = convergence(
             platform,
             sea,
-            study.times(),
-            peak_period=study.SEAS[SEA][1],
+            study_runs.times(),
+            peak_period=study_runs.SEAS[SEA][1],
             elements=ELEMENTS,
             points=points,
-            transient=study.TRANSIENT,
+            transient=study_runs.TRANSIENT,
         )
-        integral = [one.integral[dof][band].tolist() for dof, band in study.COLUMNS]
-        found[str(points)] = {
+        integral = [study.integral[dof][band].tolist() for dof, band in study_runs.COLUMNS]
+        results[str(points)] = {
             "integral": integral,
-            "period": [one.period[dof].tolist() for dof in ("heave", "pitch")],
-            "difference": [one.difference[dof].tolist() for dof in ("surge", "heave", "pitch")],
+            "period": [study.period[dof].tolist() for dof in ("heave", "pitch")],
+            "difference": [study.difference[dof].tolist() for dof in ("surge", "heave", "pitch")],
         }
-    return found
+    return results
 
 
 def run(key: str) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Every variant by name, and the pontoons."""
-    found = {}
+    """Results of the variants by name, and of the pontoons."""
+    results = {}
     for number, variant in enumerate(VARIANTS):
-        if variant.platform is focal and not FOCAL.exists():
+        if variant.platform is focal and not (FOCAL.exists() or common.text_only):
             continue
         name = f"variant-{number}"
         result = cached("study", key, name)
         if result is None:
             result = keep("study", key, name, of_variant(variant))
             say(f"  {variant.name}")
-        found[variant.name] = result
-    return found, cached("study", key, "elements", elements)
+        results[variant.name] = result
+    return results, cached("study", key, "elements", elements)

@@ -1,9 +1,9 @@
-"""What explains the differences between the study and the paper."""
+"""Text of the section on the paper's cases: what explains the differences from the paper."""
 
 from typing import Any
 
 from benchmarks.evidence.common import table
-from benchmarks.evidence.study_reasons import ELEMENTS, SEEDS, STIFFER
+from benchmarks.evidence.study_reasons_runs import ELEMENTS, SEEDS, STIFFER
 
 ERRORS = {  # %: the paper's Table 2, of PSD integrals against its experiment in the moderate sea, in the order of COLUMNS
     "1": (-99, -10, -89, 31, -74, 9),
@@ -17,7 +17,7 @@ OPENFAST = {  # variances (m2, deg2), in the order of COLUMNS: ../shared/referen
     "3": (0.1215, 0.0280, 0.00061, 0.0317, 0.0050, 0.0147),
     "4": (0.1217, 0.0280, 0.00062, 0.0317, 0.0051, 0.0148),
 }
-NAMES = {  # of variants, in short
+NAMES = {  # of variants
     "base": "as above",
     "many": "pontoons of many strips",
     "lines": f"lines {STIFFER:g} times as stiff",
@@ -27,7 +27,9 @@ NAMES = {  # of variants, in short
     "rest": "flow at the rest position",
     "both": "both of these",
     "flat": "displaced hull under a flat surface",
+    "component": "drag of each component",
     "no lag": "MacCamy-Fuchs without its lag",
+    "free": "bound waves not diffracted",
     "neither": "neither, as OpenFAST",
     "tuned": "tuned Ca kept in long waves",
     "plain": "stretching without MacCamy-Fuchs",
@@ -40,17 +42,17 @@ def implied(over: str, under: str, column: int) -> tuple[float, float, float]:
     """Ratio of two cases that Table 2 implies, and the least and largest that its rounding allows."""
 
     def error(case: str) -> tuple[float, float]:
-        found = ERRORS[case][column]
-        return found, 0.5 if found == int(found) else 0.05
+        value = ERRORS[case][column]
+        return value, 0.5 if value == int(value) else 0.05
 
     (a, da), (b, db) = error(over), error(under)
     return (100 + a) / (100 + b), (100 + a - da) / (100 + b + db), (100 + a + da) / (100 + b - db)
 
 
-def words(found: dict[str, dict[str, Any]], cut: dict[str, Any]) -> str:
+def words(results: dict[str, dict[str, Any]], cut: dict[str, Any]) -> str:
     """The tables and what explains what."""
-    base, rows = found["as above"], []
-    for name, result in found.items():
+    base, rows = results["base"], []
+    for name, result in results.items():
         both = base | result
 
         def over(a: str, b: str, column: int, both: Any = both, result: Any = result) -> str:
@@ -59,7 +61,7 @@ def words(found: dict[str, dict[str, Any]], cut: dict[str, Any]) -> str:
         first = [over("2", "1", i) if "2" in result else "–" for i in (0, 2, 4)]
         later = [over("3", "2", i) if "3" in result else "–" for i in (0, 1, 4)]
         drift = f"{both['3'][-1] - both['2'][-1]:.2f}" if "3" in result else "–"
-        rows.append((name, *first, *later, drift))
+        rows.append((NAMES[name], *first, *later, drift))
     head = (
         "Changed",
         "surge LF 2/1",
@@ -85,23 +87,23 @@ def words(found: dict[str, dict[str, Any]], cut: dict[str, Any]) -> str:
     pontoons = ("Elements of a pontoon", "heave period (s)", "pitch period (s)", "heave LF", "heave WF", "pitch LF", "pitch WF")
     return (
         f"**What makes the differences.** One thing is changed at a time, {SEEDS} seeds, Hs 3.1 m. A dash means that the case "
-        f"has nothing to change:\n\n{table(head, rows)}\n{reasons(found)}\n"
+        f"has nothing to change:\n\n{table(head, rows)}\n{reasons(results)}\n"
         "**Pontoon elements** (`jaxhydro.platform.convergence`, case 3, one seed): natural periods, and integrals against "
         "ten elements "
         f"of two points:\n\n{table(pontoons, lines)}\n{of_pontoons(cut)}\n"
     )
 
 
-def reasons(found: dict[str, dict[str, Any]]) -> str:
+def reasons(results: dict[str, dict[str, Any]]) -> str:
     """What explains which difference, in the numbers of this run."""
 
     def of(variant: str, cases: str, column: int) -> str:
-        name, (a, b) = NAMES[variant], cases.split("/")
-        both = found["as above"] | found.get(name, {})
-        return f"{both[a][column] / both[b][column]:.2g}" if name in found else "–"
+        a, b = cases.split("/")
+        both = results["base"] | results.get(variant, {})
+        return f"{both[a][column] / both[b][column]:.2g}" if variant in results else "–"
 
     def mean(variant: str) -> str:
-        return f"{found[NAMES[variant]]['3'][-1]:.2f} m"
+        return f"{results[variant]['3'][-1]:.2f} m"
 
     def paper(cases: str, column: int) -> str:
         return f"{implied(*cases.split('/'), column)[0]:.3g}"
@@ -111,7 +113,7 @@ def reasons(found: dict[str, dict[str, Any]]) -> str:
         return f"{OPENFAST[a][column] / OPENFAST[b][column]:.2g}"
 
     rounding = "{1:.2g} to {2:.2g}".format(*implied("2", "1", 0))
-    slow, short = (found[NAMES[variant]]["periods"][0] for variant in ("base", "lines"))
+    slow, short = (results[variant]["periods"][0] for variant in ("base", "lines"))
     points = (
         f"""**Surge WF, case 3 over 2**: {of("base", "3/2", 1)}, the paper's {paper("3/2", 1)}. It is the step from 1 + Ca =
         2.5 to MacCamy-Fuchs' 2 and below. With the tuned Ca kept in long waves the ratio is {of("tuned", "3/2", 1)}. With
