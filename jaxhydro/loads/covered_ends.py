@@ -23,9 +23,7 @@ class CoveredEnds(AbstractLoad):
     waves.
     """
 
-    share: Float[Array, ""] = parameter(
-        "-", "share of the waves' pressure on the ends of pontoons that is not there", -1.0, 2.0
-    )
+    share: Float[Array, ""] = parameter("-", "share of the waves' pressure on the ends of pontoons that is not there", 0.0, 1.0)
     source: ClassVar[str] = "OpenFAST HydroDyn, Morison module, loads on member ends (what this takes away)"
 
     def act(self, now: Instant, memory: Any) -> Action:

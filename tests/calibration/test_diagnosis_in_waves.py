@@ -321,7 +321,8 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     windows = {"fit": [0, 0.4 * DURATION], "holdout": [0.4 * DURATION, DURATION - STEP]}
     manifest["tests"] = [{"id": use, "window": window, "use": use, **sea} for use, window in windows.items()]
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
-    study = set_up_study(campaign := load_campaign(tmp_path), options_of(campaign)).study
+    setup = set_up_study(campaign := load_campaign(tmp_path), options_of(campaign))
+    study = setup.study
     (record,) = study.seas
     assert record.fitted < 0.45 * record.steps
     place = Point(np.asarray(study.space.start), np.zeros((0, 0)))
@@ -345,3 +346,15 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     assert_allclose(looks[0].residual, some, rtol=0, atol=1e-12)
     assert not looks[0].slopes[~fitted].any() and np.abs(looks[0].slopes[fitted]).max() > 1e-3
     assert_allclose(looks[0].slopes, looks[1].slopes, rtol=0, atol=1e-9 * np.abs(looks[1].slopes).max())
+    # a neutral candidate at another value of its shape changes no slope of the acceleration by the state
+    memory = next(one for one in setup.candidates if one.name == "radiation_memory (heave)")
+    along, known = study.index(memory.amplitudes), {}
+    study.linearise_all([(place, along)], keep=known)
+    for values in memory.grid[1:3]:
+        x = np.array(place.x)
+        for label, value in values.items():
+            x[study.labels.index(label)] = study.space.free[study.labels.index(label)].transform.inverse(value)
+        jobs = [(Point(x, place.own), along)]
+        quick, whole = study.linearise_neutral(jobs, known, along)[0], study.linearise_all(jobs)[0]
+        assert_allclose(quick.slopes, whole.slopes, rtol=0, atol=1e-12 * np.abs(whole.slopes).max())
+        assert_allclose(quick.residual, some, rtol=0, atol=1e-12)

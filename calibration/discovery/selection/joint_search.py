@@ -11,9 +11,9 @@ from calibration.discovery.acceptance import (
     MIN_LIKELIHOOD_GAIN,
     HeldOutComparison,
 )
-from calibration.discovery.broyden_fit import far_step
+from calibration.discovery.broyden_fit import MIN_RELATIVE_GAIN, far_step
 from calibration.discovery.diagnosis import Score
-from calibration.discovery.effect_fits import ReportStage
+from calibration.discovery.effect_fits import REFIT_TOLERANCE, ReportStage
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
@@ -128,7 +128,15 @@ class JointSearch(Search):
             one = self.candidates[name]
             self.scores.append(Score(number, one.effect, one.dof, gain, len(one.amplitudes), float("nan"), None, None))
 
-    def fit_subset(self, state: FitState, columns: CandidateColumns, subset: Subset, stage: str, share: float) -> FitState:
+    def fit_subset(
+        self,
+        state: FitState,
+        columns: CandidateColumns,
+        subset: Subset,
+        stage: str,
+        share: float,
+        tolerance: float = MIN_RELATIVE_GAIN,
+    ) -> FitState:
         """Fit the effects of a subset, from a state on, with the slopes of a linear model.
 
         Args:
@@ -137,6 +145,7 @@ class JointSearch(Search):
             subset: The subset.
             stage: Stage to report.
             share: Progress to report (0 to 1).
+            tolerance: Relative gain in cost of a step that ends the fit.
         """
         place = state.look.place
         chosen = tuple(self.candidates[columns.variants[i].name] for i in subset.variants)
@@ -160,7 +169,7 @@ class JointSearch(Search):
             own = step_of_decays(self.study, columns.look, subset.fit.own)
             look = far_step(self.study, look, self.study.used, self.prior(chosen), step, own)
         names = listed([effect_in_words(one.name) for one in chosen]) or "no effect"
-        reached = self.fit(look, chosen, STEP_ITERATIONS, 0, f"{stage}: fit with {names}", share)
+        reached = self.fit(look, chosen, STEP_ITERATIONS, 0, f"{stage}: fit with {names}", share, tolerance)
         return self.state(chosen, reached)
 
     def as_predicted(self, state: FitState, subset: Subset) -> bool:
@@ -211,7 +220,8 @@ class JointSearch(Search):
                 state = self.fit_subset(state, self.columns, kept, f"round {number}", self.share(number))
                 break
             visited.add(names)
-            before, state = state, self.fit_subset(state, self.columns, best, f"round {number}", self.share(number - 0.5))
+            stage, share = f"round {number}", self.share(number - 0.5)
+            before, state = state, self.fit_subset(state, self.columns, best, stage, share, REFIT_TOLERANCE)
             if names <= {one.name for one in before.chosen} and self.as_predicted(state, best):
                 break  # effects have gone; slopes elsewhere would tell nothing else
             reach(state)
