@@ -71,9 +71,9 @@ def tally_sentences(tally: Tally) -> str:
         f"- The right effect is named first in {tally.named}. It is named first, named after another, or cannot be told from "
         f"what is named first, in {tally.listed}.\n"
         f"- Nothing missing: {tally.alarms} raised a false alarm, an effect or something unexplained.{two}\n"
-        "- The error of the tests that were not fitted (held-out error) is compared with that of the same platform in the same "
-        f"waves with nothing missing. It is within {MAX_ERROR_RATIO} times that with nothing missing in {tally.near}; in "
-        f"{tally.told} it is, or exactly what is missing was found. A model that was told the truth then has the same error."
+        "- The error of tests that were not fitted (held-out error) is compared with its value for the same platform and waves "
+        f"with nothing missing. It is within {MAX_ERROR_RATIO} times that value in {tally.near}. In {tally.told} it is, or "
+        "exactly what is missing was found. A model that was told the truth then has the same error."
         f"{others}\n\n"
     )
 
