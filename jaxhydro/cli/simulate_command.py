@@ -27,7 +27,7 @@ from jaxhydro.remarks import Remark
 from jaxhydro.rotations import rotation
 from jaxhydro.units import for_people, unit_of
 from jaxhydro.waves.regular_waves import regular_wave, series_remarks
-from jaxhydro.waves.sea import Stretching, WaveSea
+from jaxhydro.waves.sea import Stretching, WaveSea, elevation_at_origin
 from jaxhydro.waves.sea_limits import sea_limits
 
 RAMP_PERIODS = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
@@ -176,10 +176,7 @@ def run(
     if not finite(times, position):
         return False
     told_of_bed(model, times, position)
-    elevation = None
-    if sea is not None:
-        origin = jnp.zeros((2, 1))
-        elevation = np.asarray(jax.vmap(lambda time: sea.elevation(time, origin)[0])(jnp.asarray(times)))
+    elevation = None if sea is None else elevation_at_origin(sea, times)
     motion = Motion.of(times, position, elevation)
     inputs = job.inputs
     if wave is not None:

@@ -9,9 +9,11 @@ import xarray as xr
 from jaxhydro.display.data_frames import single
 from jaxhydro.environment import DOFS
 from jaxhydro.units import for_people
+from jaxhydro.waves.sea import elevation_at_origin
 
 if TYPE_CHECKING:
     from jaxhydro.dynamics.response import Response
+    from jaxhydro.waves.sea import AbstractSea
 
 CF_VERSION = "CF-1.8"
 ELEVATION = "elevation of the water above still water at the reference position"
@@ -25,16 +27,18 @@ DIRECTIONS = {
 }
 
 
-def response_dataset(response: "Response") -> xr.Dataset:
+def response_dataset(response: "Response", platform: str | None = None, sea: "AbstractSea | None" = None) -> xr.Dataset:
     """Position of the reference point over time as an xarray data set, in m and degrees.
 
     It has a variable for each motion. Units are those of the package's files.
 
     Args:
         response: The motion, (t, 6).
+        platform: Name of the platform, or None.
+        sea: The sea whose elevation is added, or None.
 
     Returns:
-        As of `motion_dataset`, without an elevation.
+        As of `motion_dataset`.
 
     Raises:
         ValueError: There are several motions in one, (..., t, 6).
@@ -42,8 +46,13 @@ def response_dataset(response: "Response") -> xr.Dataset:
     import jaxhydro
 
     motions = {dof: for_people(dof, values) for dof, values in single(response).items()}
-    about = {"title": "Motion of a floating platform", "source": f"jaxhydro {jaxhydro.__version__}"}
-    return motion_dataset(np.asarray(response.time), motions, None, about)
+    wave = None if sea is None else elevation_at_origin(sea, response.time)
+    about = {
+        "title": f"Motion of {platform or 'a floating platform'}",
+        "source": f"jaxhydro {jaxhydro.__version__}",
+        "platform": platform,
+    }
+    return motion_dataset(np.asarray(response.time), motions, wave, about)
 
 
 def motion_dataset(

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
+    from jaxhydro.waves.sea import AbstractSea
+
 MIN_DISTANCE_FROM_END = (
     0.2  # of a half cycle: an extreme nearer than this to an end of the record may be the record's, not the motion's
 )
@@ -68,8 +70,12 @@ class Response(eqx.Module):
 
         return are_numbers((self.time, self.position)) and np.ndim(self.position) == 2
 
-    def to_xarray(self) -> "xr.Dataset":
+    def to_xarray(self, *, platform: str | None = None, sea: "AbstractSea | None" = None) -> "xr.Dataset":
         """Motions (m, degree) over time (s) as a data set after the CF conventions.
+
+        Args:
+            platform: Name of the platform, for the attribute `platform`.
+            sea: The sea, whose elevation at the reference position becomes the variable `wave` (m).
 
         Returns:
             Variables `surge` ... `yaw` with `units`, `long_name` and `standard_name`, over the coordinate `time`.
@@ -79,7 +85,7 @@ class Response(eqx.Module):
         """
         from jaxhydro.display.motion_dataset import response_dataset
 
-        return response_dataset(self)
+        return response_dataset(self, platform, sea)
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Motions (m, deg) over time (s), with the column names of motion.csv.

@@ -11,6 +11,8 @@ from typing import Literal, get_args
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
+from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from jaxhydro.choices import check
@@ -319,3 +321,19 @@ def profiles(
     down, up = jnp.exp(k * z), jnp.exp(-k * (z + 2 * depth))
     scale = 1 / (1 + jnp.exp(-2 * k * depth))
     return (down + up) * scale, (down - up) * scale
+
+
+def elevation_at_origin(sea: AbstractSea, times: ArrayLike) -> np.ndarray | None:
+    """Surface elevation (m) at the reference position, (t,); None in still water.
+
+    Args:
+        sea: The sea.
+        times: Times (s), (t,).
+    """
+
+    def at(time: Float[Array, ""]) -> Float[Array, ""] | None:
+        elevation = sea.elevation(time, jnp.zeros((2, 1)))
+        return None if elevation is None else elevation[0]
+
+    elevation = jax.jit(jax.vmap(at))(jnp.asarray(times))
+    return None if elevation is None else np.asarray(elevation)

@@ -122,6 +122,15 @@ def test_a_motion_as_a_data_set(response: jh.Response, tmp_path: Path) -> None:
         xr.testing.assert_identical(read.load(), data)
 
 
+def test_a_data_set_says_in_which_sea_which_platform_moved(response: jh.Response, model: jh.Model) -> None:
+    sea = jh.regular_wave(2.0, 9.0, model.environment)
+    data = response.to_xarray(platform="buoy", sea=sea)
+    assert data.attrs["platform"] == "buoy" and data.attrs["title"] == "Motion of buoy"
+    assert data["wave"].attrs["units"] == "m"
+    assert_allclose(data["wave"], np.cos(2 * np.pi * TIMES / 9.0), atol=1e-9)
+    assert "wave" not in response.to_xarray(sea=jh.StillWater())
+
+
 def test_a_motion_as_a_data_frame(response: jh.Response) -> None:
     frame = response.to_dataframe()
     assert list(frame.columns) == ["surge_m", "sway_m", "heave_m", "roll_deg", "pitch_deg", "yaw_deg"]
