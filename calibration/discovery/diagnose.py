@@ -39,11 +39,11 @@ def diagnose(
 ) -> Diagnosis:
     """Find the effects that a model lacks to explain a campaign.
 
-    All candidate effects are selected together on a linearised model (`calibration.discovery.selection`). Each that is selected
+    All candidate effects are selected together on a linearised model (`calibration.discovery.selection`). Every selected effect
     is verified by simulation, in the fitted tests and in those marked `holdout`.
 
     Args:
-        model: The model to diagnose; the declared one is `campaign.model`.
+        model: The model to diagnose; the campaign's own is `campaign.model`.
         campaign: The campaign.
         candidates: The user's own candidate effects, beside the catalogue.
         progress: Called with the stage of the search.
@@ -67,7 +67,7 @@ def diagnose(
             progress(Progress(stage, iteration, cost, fraction, "-2 ln L"))
 
     states: list[FitState] = []
-    unusable: list[str] = []  # why what an earlier run reached is left alone
+    unusable: list[str] = []  # why an earlier run's checkpoint is not resumed
 
     def spent() -> float:
         return search.earlier + clock.monotonic() - begun
@@ -100,9 +100,9 @@ def diagnose(
         signs = [reversal_note(list(wrong))] if wrong else []
         lost = [] if search.alone is None else abandoned_decays(search.study, search.alone, states[-1].left)
         unknown = [] if campaign.manifest.zero is not None else [UNKNOWN_ZERO_NOTE]
-        warnings = [str(finding) for finding in group_findings(campaign.findings)]
+        findings = [str(finding) for finding in group_findings(campaign.findings)]
         worse = worsened_motions(search.study, states[0].left, states[-1].left)
-        every = (*signs, *search.study.notes, *search.notes, *lost, *worse, *unknown, *warnings)
+        every = (*signs, *search.study.notes, *search.notes, *lost, *worse, *unknown, *findings)
         return conclude(campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 
     try:

@@ -62,7 +62,9 @@ def sea_slopes(
     keep: Accelerations | None = None,
     by_state: Accelerations | None = None,
 ) -> tuple[Float[np.ndarray, "w c n"], Float[np.ndarray, "w c n q"]]:
-    """Residuals over some steps, and slopes along the directions; zeros of the directions that are not asked for.
+    """Residuals of a run over some steps, and their slopes along the first directions.
+
+    Slopes along directions that are not asked for are zero.
 
     Args:
         record: The run.
@@ -73,6 +75,9 @@ def sea_slopes(
         keep: Receives the slopes of the acceleration by the state.
         by_state: These slopes, from a point where the motion and they are the same; None: they are computed. At most
             `COMPARED_AT_ONCE` directions are then asked for, and the others say what else may move.
+
+    Returns:
+        Residuals (w, c, n) and slopes (w, c, n, q).
     """
     steps, width = jnp.asarray(count), frame.basis.shape[1]
     begin = _begin(record, frame)
@@ -80,10 +85,10 @@ def sea_slopes(
         begin = _few(begin, COMPARED_AT_ONCE)
     path, states = _simulated(record, begin.model, begin.state, steps)
     needed = -(-int(evaluations(count + EXTRA_STEPS + 1)) // SEGMENT)
-    tangent, found = jax.vmap(Tangent.begin)(begin.d_state), []
+    tangent, parts = jax.vmap(Tangent.begin)(begin.d_state), []
     for i, (slope, push) in enumerate(_segments(record, begin, states, needed, pool, by_state)):
-        tangent, some = _followed(tangent, jnp.asarray(i * SEGMENT), slope, push, record.step)
-        found.append(np.asarray(some))
+        tangent, d_motion = _followed(tangent, jnp.asarray(i * SEGMENT), slope, push, record.step)
+        parts.append(np.asarray(d_motion))
         if keep is not None:
             keep.append(slope[:, ACCELERATIONS])
     rows = first_evaluations(needed * SEGMENT - evaluations(0))[: len(path)]
@@ -92,20 +97,20 @@ def sea_slopes(
     for first in range(0, max(directions, 1), COMPARED_AT_ONCE):
         mine = np.arange(first, first + COMPARED_AT_ONCE) % len(begin.d_state)  # always as many: one program
         along = np.zeros((COMPARED_AT_ONCE, *path.shape))
-        along[:, : len(rows)] = np.moveaxis(np.concatenate([part[:, mine] for part in found])[rows], 0, 1)
+        along[:, : len(rows)] = np.moveaxis(np.concatenate([part[:, mine] for part in parts])[rows], 0, 1)
         few = begin._replace(d_model=jax.tree.map(itemgetter(mine), begin.d_model), d_state=begin.d_state[mine])
-        residual, some = _compared(record, few, path, jnp.asarray(along), steps)
-        slopes[..., mine] = np.asarray(some)
+        residual, columns = _compared(record, few, path, jnp.asarray(along), steps)
+        slopes[..., mine] = np.asarray(columns)
     return np.asarray(residual), slopes
 
 
 def _few(begin: _Begin, count: int) -> _Begin:
-    """The first directions only; what no direction at all moves is known not to move."""
+    """The first directions only; a value that no direction at all moves has None as its slopes."""
 
-    def of(slope: Array | None) -> Array | None:
+    def first(slope: Array | None) -> Array | None:
         return slope[:count] if slope is not None and np.asarray(slope).any() else None
 
-    d_model = jax.tree.map(of, begin.d_model, is_leaf=lambda leaf: leaf is None)
+    d_model = jax.tree.map(first, begin.d_model, is_leaf=lambda leaf: leaf is None)
     return begin._replace(d_model=d_model, d_state=begin.d_state[:count])
 
 
@@ -120,8 +125,8 @@ def _segments(
     """Linearisations of the first segments in order, some of them computed ahead."""
     ahead: deque[Future[tuple[Array, Array]]] = deque()
     for i in range(count):
-        known = None if by_state is None else by_state[i]
-        ahead.append(pool.submit(_linearised, record, begin, states, jnp.asarray(i * SEGMENT), known))
+        segment_by_state = None if by_state is None else by_state[i]
+        ahead.append(pool.submit(_linearised, record, begin, states, jnp.asarray(i * SEGMENT), segment_by_state))
         if len(ahead) > SEGMENTS_AHEAD * cores():
             yield ahead.popleft().result()
     while ahead:
@@ -132,13 +137,13 @@ def _segments(
 def _begin(record: SeaRecord, frame: Frame) -> _Begin:
     """Model and first state, and their slopes along the directions."""
 
-    def at(z: Float[Array, " q"]) -> tuple[Any, Array]:
+    def begun(z: Float[Array, " q"]) -> tuple[Any, Array]:
         model, state = record.begin(frame.origin + frame.basis @ z)
         moves = jax.tree.map(lambda new, old: eqx.is_array(new) and new is not old, model, record.model)
         return eqx.filter(model, moves), ravel_pytree(state)[0]
 
     model, state = record.begin(frame.origin)
-    slopes = jax.jacfwd(at)(jnp.zeros(frame.basis.shape[1]))
+    slopes = jax.jacfwd(begun)(jnp.zeros(frame.basis.shape[1]))
     return _Begin(model, ravel_pytree(state)[0], *jax.tree.map(lambda x: jnp.moveaxis(x, -1, 0), slopes))
 
 
@@ -146,7 +151,10 @@ def _begin(record: SeaRecord, frame: Frame) -> _Begin:
 def _simulated(
     record: SeaRecord, model: Model, state: Float[Array, " s"], count: Int[Array, ""]
 ) -> tuple[Float[Array, "n m"], Float[Array, "e s"]]:
-    """Motion at the ends of the steps, and the states at which the right-hand side was evaluated, in whole segments."""
+    """Motion at the ends of the steps, and states at the evaluations of the right-hand side.
+
+    The evaluations are those of whole segments.
+    """
     _, unravel = ravel_pytree(model.rest())
     clock = (record.times[0], record.step, count + EXTRA_STEPS)
     capacity = record.steps + EXTRA_STEPS
@@ -162,22 +170,25 @@ def _linearised(
     first: Int[Array, ""],
     by_state: Float[Array, "e 6 s"] | None,
 ) -> tuple[Float[Array, "e s s"], Float[Array, "e q s"]]:
-    """Slopes of the right-hand side at the evaluations of a segment, by the state and along the directions."""
+    """Slopes of the right-hand side in a segment, by the state and along the directions.
+
+    They are those at the evaluations of the segment.
+    """
     _, unravel = ravel_pytree(begin.model.rest())
     still = jax.tree.map(lambda _: None, record.sea)
 
-    def at(now: tuple[Array, Array, Array | None]) -> tuple[Array, Array]:
-        time, state, known = now
+    def linearised(now: tuple[Array, Array, Array | None]) -> tuple[Array, Array]:
+        time, state, acceleration_slopes = now
 
         def along(d_model: Any) -> tuple[Array, Array]:
             driver, d_driver = (begin.model, record.sea), (d_model, still)
-            return linearised_rate(rate_of(unravel), driver, d_driver, known)(time, state)
+            return linearised_rate(rate_of(unravel), driver, d_driver, acceleration_slopes)(time, state)
 
         return jax.vmap(along, out_axes=(None, 0))(begin.d_model)
 
     times = times_of(first + jnp.arange(SEGMENT), record.times[0], record.step)
     mine = jax.lax.dynamic_slice_in_dim(states, first, SEGMENT)
-    return jax.lax.map(at, (times, mine, by_state), batch_size=LINEARISED_AT_ONCE)
+    return jax.lax.map(linearised, (times, mine, by_state), batch_size=LINEARISED_AT_ONCE)
 
 
 @jit_once
@@ -192,7 +203,7 @@ def _followed(
 
     def after(tangent: Tangent, now: tuple[Array, Array, Array]) -> tuple[Tangent, Array]:
         index, slope, push = now
-        return jax.vmap(lambda one, push: one.after(index, slope, push, step))(tangent, push), tangent.y[:, :MOTION_SIZE]
+        return jax.vmap(lambda along, push: along.after(index, slope, push, step))(tangent, push), tangent.y[:, :MOTION_SIZE]
 
     return jax.lax.scan(after, tangent, (first + jnp.arange(len(slope)), slope, push))
 
@@ -210,5 +221,5 @@ def _compared(
         grid = grid_of(model, path[:, :6], path[:, 6:], record.times[0], record.step, count)
         return record.compared(model, rest, grid, count)
 
-    found, slope = jax.linearize(residual, moved, begin.state[:6], path)
-    return found, jax.vmap(slope, out_axes=-1)(begin.d_model, begin.d_state[:, :6], along)
+    value, slope = jax.linearize(residual, moved, begin.state[:6], path)
+    return value, jax.vmap(slope, out_axes=-1)(begin.d_model, begin.d_state[:, :6], along)

@@ -30,19 +30,19 @@ def _nonzero(table: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 class _Rows:
-    """Coefficients of each evaluation: its point y + h `at` . slopes, and the update h `add` . slopes.
+    """Coefficients of each evaluation: its point y + h `point` . slopes, and the update h `add` . slopes.
 
-    Slopes are counted backwards from the newest, which `add` includes and `at` does not.
+    Slopes are counted backwards from the newest, which `add` includes and `point` does not.
     """
 
     def __init__(self) -> None:
         rows = 4 * START_STEPS + 4  # the last one repeats
-        self.at, self.add = np.zeros((rows, STORED_SLOPES)), np.zeros((rows, STORED_SLOPES))
+        self.point, self.add = np.zeros((rows, STORED_SLOPES)), np.zeros((rows, STORED_SLOPES))
         self.time, self.step = np.zeros(rows), np.zeros(rows, int)
         table = RK4.coefficients()
         for i in range(4 * START_STEPS):
             stage, self.step[i] = i % 4, i // 4
-            self.at[i, :stage] = table[stage, :stage][::-1]
+            self.point[i, :stage] = table[stage, :stage][::-1]
             self.time[i] = i // 4 + RK4.nodes[stage]
             if stage == 3:
                 self.add[i, :4] = RK4.weights[::-1]
@@ -53,8 +53,8 @@ class _Rows:
                 taken = step - back
                 self.add[i, i - (4 * taken if taken < START_STEPS else 4 * START_STEPS + taken - START_STEPS)] = weight
         # the same without zeros: how many evaluations ago, and coefficients
-        self.at_back, self.at_weight = _nonzero(self.at, 1)
-        self.at_back += 1
+        self.point_back, self.point_weight = _nonzero(self.point, 1)
+        self.point_back += 1
         self.add_back, self.add_weight = _nonzero(self.add, 4)
 
 
@@ -70,7 +70,7 @@ def _row(index: Int[Array, ""]) -> tuple[Array, Array, Array, Array]:
     """Coefficients, time (in steps) and step of an evaluation."""
     row = jnp.minimum(index, len(ROWS.time) - 1)
     late = (index - row).astype(float)
-    return jnp.array(ROWS.at)[row], jnp.array(ROWS.add)[row], jnp.array(ROWS.time)[row] + late, jnp.array(ROWS.step)[row]
+    return jnp.array(ROWS.point)[row], jnp.array(ROWS.add)[row], jnp.array(ROWS.time)[row] + late, jnp.array(ROWS.step)[row]
 
 
 def _advance(y, slopes, slope, add, step):
@@ -102,8 +102,8 @@ def evaluation(
     Returns:
         The state and the remembered slopes after it, the number of its step, and the state at which it was made.
     """
-    at, add, time, number = _row(index)
-    state = y + step * (at @ slopes)
+    point, add, time, number = _row(index)
+    state = y + step * (point @ slopes)
     slope = jnp.concatenate(rate(driver, start + step * time, state))
     return *_advance(y, slopes, slope, add, step), number + jnp.maximum(index - len(ROWS.time) + 1, 0), state
 
@@ -119,7 +119,7 @@ def march(
     keep: bool,
     shown: int | None = None,
 ) -> tuple[Array, Any]:
-    """States after 0, 1 ... `count` steps, as `forward`, and if asked for those at which the right-hand side was evaluated.
+    """States after 0, 1 ... `count` steps, as `forward`, and on request those of all evaluations.
 
     Args:
         driver: First argument of `rate`.
@@ -179,11 +179,11 @@ class Tangent(NamedTuple):
         def back(slopes: Array, ago: Array) -> Array:
             return jax.lax.dynamic_index_in_dim(slopes, (index - ago) % STORED_SLOPES, 0, keepdims=False)
 
-        (last,), (weight,) = jnp.array(ROWS.at_back)[row], jnp.array(ROWS.at_weight)[row]
+        (last,), (weight,) = jnp.array(ROWS.point_back)[row], jnp.array(ROWS.point_weight)[row]
         new = slope @ (self.y + step * weight * back(self.slopes, last)) + push
         slopes = jax.lax.dynamic_update_index_in_dim(self.slopes, new, index % STORED_SLOPES, 0)
-        some, weights = jnp.array(ROWS.add_back)[row], jnp.array(ROWS.add_weight)[row]
-        return Tangent(self.y + step * sum(weights[k] * back(slopes, some[k]) for k in range(len(some))), slopes)
+        lags, weights = jnp.array(ROWS.add_back)[row], jnp.array(ROWS.add_weight)[row]
+        return Tangent(self.y + step * sum(weights[k] * back(slopes, lags[k]) for k in range(len(lags))), slopes)
 
 
 @eqx.filter_custom_jvp
@@ -213,25 +213,25 @@ def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int, shown: int):
     driver, y, start, step, count = primals
     d_driver, d_y, *_ = tangents
     path, taken = march(driver, y, start, step, count, rate, capacity, True, shown)
-    at = linearised_rate(rate, driver, d_driver)
+    linearised = linearised_rate(rate, driver, d_driver)
     batches = -(-evaluations(capacity + 1) // BATCH)
     taken = jnp.pad(taken, ((0, batches * BATCH - taken.shape[0]), (0, 0)))
 
     def advance(carry, now):
-        tangent, found = carry
+        tangent, d_path = carry
         index = now[0]
         row = jnp.minimum(index, len(ROWS.time) - 1)
-        found = jax.lax.dynamic_update_index_in_dim(found, tangent.y[:shown], _row(index)[3] + index - row, 0)
-        return (tangent.after(*now, step), found), None
+        d_path = jax.lax.dynamic_update_index_in_dim(d_path, tangent.y[:shown], _row(index)[3] + index - row, 0)
+        return (tangent.after(*now, step), d_path), None
 
     def batch(block, carry):
         index = block * BATCH + jnp.arange(BATCH)
         states = jax.lax.dynamic_slice_in_dim(taken, block * BATCH, BATCH)
-        return jax.lax.scan(advance, carry, (index, *jax.vmap(at)(times_of(index, start, step), states)))[0]
+        return jax.lax.scan(advance, carry, (index, *jax.vmap(linearised)(times_of(index, start, step), states)))[0]
 
     carry = Tangent.begin(jnp.zeros_like(y) if d_y is None else d_y), jnp.zeros((capacity + 1 + BATCH, shown))
-    _, found = jax.lax.fori_loop(0, (evaluations(count + 1) + BATCH - 1) // BATCH, batch, carry)
-    return path, found[: capacity + 1]
+    _, d_path = jax.lax.fori_loop(0, (evaluations(count + 1) + BATCH - 1) // BATCH, batch, carry)
+    return path, d_path[: capacity + 1]
 
 
 def first_evaluations(steps: int) -> np.ndarray:
@@ -244,8 +244,8 @@ def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Flo
 
     def advance(carry, index):
         y, slopes = carry
-        at, add, time, _ = _row(index)
-        slope = jnp.concatenate(rate(driver, start + step * time, y + step * (at @ slopes)))
+        point, add, time, _ = _row(index)
+        slope = jnp.concatenate(rate(driver, start + step * time, y + step * (point @ slopes)))
         return _advance(y, slopes, slope, add, step), y
 
     total = evaluations(capacity + 1)

@@ -27,25 +27,25 @@ def walk(jaxpr: core.Jaxpr, consts: Sequence[Any], arguments: Sequence[Any], bin
     Returns:
         Values of the results.
     """
-    known: dict[core.Var, Any] = dict(zip((*jaxpr.constvars, *jaxpr.invars), (*consts, *arguments), strict=True))
+    environment: dict[core.Var, Any] = dict(zip((*jaxpr.constvars, *jaxpr.invars), (*consts, *arguments), strict=True))
 
     def value(atom: Any) -> Any:
-        return np.asarray(atom.val, type_of(atom).dtype) if isinstance(atom, core.Literal) else known[atom]
+        return np.asarray(atom.val, type_of(atom).dtype) if isinstance(atom, core.Literal) else environment[atom]
 
     for equation in jaxpr.eqns:
         values = [value(atom) for atom in equation.invars]
         if equation.primitive.name in CALLS:
             inner: Any = equation.params.get("call_jaxpr", equation.params.get("jaxpr"))
-            body, own = (inner.jaxpr, inner.consts) if isinstance(inner, core.ClosedJaxpr) else (inner, ())
-            found = walk(body, own, values, bind)
+            body, inner_consts = (inner.jaxpr, inner.consts) if isinstance(inner, core.ClosedJaxpr) else (inner, ())
+            results = walk(body, inner_consts, values, bind)
         else:
-            found = bind(equation, values)
-        known.update(zip(equation.outvars, found, strict=True))
+            results = bind(equation, values)
+        environment.update(zip(equation.outvars, results, strict=True))
     return [value(atom) for atom in jaxpr.outvars]
 
 
 def apply(equation: core.JaxprEqn, values: Sequence[Any]) -> list[Any]:
     """One operation applied to arrays, traced or not."""
     parameters = equation.primitive.get_bind_params(equation.params)
-    found = equation.primitive.bind(*values, **parameters)
-    return list(found) if equation.primitive.multiple_results else [found]
+    results = equation.primitive.bind(*values, **parameters)
+    return list(results) if equation.primitive.multiple_results else [results]

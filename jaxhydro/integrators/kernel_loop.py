@@ -54,11 +54,11 @@ def march(
     total = adams_bashforth.evaluations(capacity + 1)
     slopes = jnp.zeros((STORED_SLOPES, y.shape[0]), y.dtype)
 
-    def one(index, y, slopes):
+    def advanced(index, y, slopes):
         return adams_bashforth.evaluation(driver, index, y, slopes, start, step, rate)[:2]
 
     types = [jax.ShapeDtypeStruct((), jnp.int32), *(jax.ShapeDtypeStruct(x.shape, x.dtype) for x in (y, slopes))]
-    made, (_, *carried), results = plan(one, types)
+    made, (_, *carried), results = plan(advanced, types)
     tables = Tables()
     pools = _first_contents(made, zip(carried, (y, slopes), strict=True))
     streams = [x.reshape(-1) for x in made.streams]
@@ -98,12 +98,12 @@ def _first_contents(made: Plan, carried: Iterable[tuple[Value, Array]]) -> dict[
     contents = {name: list(parts) for name, parts in made.contents.items()}
     for value, array in carried:
         contents.setdefault(value.pool, []).append((int(value.address.reshape(-1)[0]), array))
-    found = {}
+    workspaces = {}
     for name, size in sorted(made.size.items()):
         dtype = jnp.int32 if name == "bool" else np.dtype(name)
-        parts, at = [], 0
+        parts, end = [], 0
         for start, array in sorted(contents.get(name, []), key=lambda part: part[0]):
-            parts += [jnp.zeros(start - at, dtype), jnp.asarray(array).reshape(-1).astype(dtype)]
-            at = start + array.size
-        found[name] = jnp.concatenate([*parts, jnp.zeros(size + made.widest - at, dtype)])
-    return found
+            parts += [jnp.zeros(start - end, dtype), jnp.asarray(array).reshape(-1).astype(dtype)]
+            end = start + array.size
+        workspaces[name] = jnp.concatenate([*parts, jnp.zeros(size + made.widest - end, dtype)])
+    return workspaces

@@ -31,9 +31,9 @@ def moved(equation: core.JaxprEqn, addresses: Sequence[np.ndarray], others: Sequ
     """
     name, how, first = equation.primitive.name, equation.params, addresses[0]
     if name == "broadcast_in_dim":
-        at = how["broadcast_dimensions"]
+        dimensions = how["broadcast_dimensions"]
         shape = [1] * len(how["shape"])
-        for dimension, size in zip(at, first.shape, strict=True):
+        for dimension, size in zip(dimensions, first.shape, strict=True):
             shape[dimension] = size
         return [np.broadcast_to(first.reshape(shape), how["shape"])]
     if name in ("reshape", "squeeze", "expand_dims"):
@@ -44,7 +44,7 @@ def moved(equation: core.JaxprEqn, addresses: Sequence[np.ndarray], others: Sequ
         return [np.stack(addresses, axis=how["axis"])]
     if name == "slice":
         strides = how["strides"] or (1,) * first.ndim
-        return [first[tuple(slice(*one) for one in zip(how["start_indices"], how["limit_indices"], strides))]]
+        return [first[tuple(slice(*bounds) for bounds in zip(how["start_indices"], how["limit_indices"], strides))]]
     if name == "transpose":
         return [first.transpose(how["permutation"])]
     if name == "rev":
@@ -53,8 +53,8 @@ def moved(equation: core.JaxprEqn, addresses: Sequence[np.ndarray], others: Sequ
         return np.split(first, np.cumsum(how["sizes"])[:-1], axis=how["axis"])
     with jax.ensure_compile_time_eval():
         if name == "scatter":  # its operation knows the type that it was traced for
-            arrays = [jnp.asarray(one, float) for one in addresses]
+            arrays = [jnp.asarray(address, float) for address in addresses]
             arrays.insert(1, jnp.asarray(others[0]))
         else:
-            arrays = [jnp.asarray(one) for one in (*addresses, *others)]
-        return [np.asarray(one).astype(int) for one in apply(equation, arrays)]
+            arrays = [jnp.asarray(array) for array in (*addresses, *others)]
+        return [np.asarray(result).astype(int) for result in apply(equation, arrays)]

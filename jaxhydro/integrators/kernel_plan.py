@@ -103,16 +103,16 @@ class Plan:
         if value.stream is not None or not value.address.size:
             return []
         owners = self._owners[value.pool]
-        which = np.unique(np.searchsorted([start for start, _ in owners], value.address.reshape(-1), side="right") - 1)
-        return [found for i in which if (found := owners[i][1]) is not None]
+        numbers = np.unique(np.searchsorted([start for start, _ in owners], value.address.reshape(-1), side="right") - 1)
+        return [owner for i in numbers if (owner := owners[i][1]) is not None]
 
     def in_register(self, value: Value) -> Instruction | None:
         """The instruction whose whole result this is, element by element or one for all, or None."""
         owners = self.owner_of(value)
         if len(owners) != 1:
             return None
-        own, flat = owners[0].value.address.reshape(-1), value.address.reshape(-1)
-        return owners[0] if own.size in (1, flat.size) and bool((own == flat).all()) else None
+        whole, flat = owners[0].value.address.reshape(-1), value.address.reshape(-1)
+        return owners[0] if whole.size in (1, flat.size) and bool((whole == flat).all()) else None
 
     def finish(self, results: Sequence[Value]) -> None:
         """Drop what no result needs, and mark what has to be stored."""
@@ -121,12 +121,12 @@ class Plan:
             for owner in self.owner_of(value):
                 needed.add(id(owner))
                 owner.stored = owner.stored or self.in_register(value) is None
-        for instruction in reversed(self.instructions):
-            if id(instruction) not in needed:
+        for reader in reversed(self.instructions):
+            if id(reader) not in needed:
                 continue
-            for value in (one for one in instruction.operands if isinstance(one, Value)):
-                held = None if instruction.kind == "contract" else self.in_register(value)
+            for value in (operand for operand in reader.operands if isinstance(operand, Value)):
+                held = None if reader.kind == "contract" else self.in_register(value)
                 for owner in self.owner_of(value):
                     needed.add(id(owner))
                     owner.stored = owner.stored or held is None
-        self.instructions = [one for one in self.instructions if id(one) in needed]
+        self.instructions = [instruction for instruction in self.instructions if id(instruction) in needed]

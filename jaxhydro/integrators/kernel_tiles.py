@@ -43,7 +43,7 @@ class Tables:
         self.size, self._known = 0, dict[bytes, int]()
 
     def at(self, addresses: np.ndarray) -> int:
-        """Where these lie."""
+        """Number of the first of these addresses in the array."""
         row = np.ascontiguousarray(addresses, np.int32)
         if (key := row.tobytes()) not in self._known:
             self._known[key] = self.size
@@ -52,7 +52,7 @@ class Tables:
         return self._known[key]
 
     def array(self) -> np.ndarray:
-        """All of them."""
+        """All addresses in one array."""
         return np.concatenate(self.parts) if self.parts else np.zeros(1, np.int32)
 
 
@@ -97,65 +97,65 @@ class Writer:
             return self.table[pl.ds(self.tables.at(full), size)]
         first, strides = rule
         flat, inner = jnp.arange(size, dtype=jnp.int32), math.prod(shape)
-        found = jnp.full((size,), first, jnp.int32)
+        places = jnp.full((size,), first, jnp.int32)
         for n, whole, stride in zip(address.shape, shape, strides):
             inner //= whole
             if stride:
                 along = flat // inner if inner > 1 else flat
                 if inner * whole < size:
                     along = along % whole
-                found = found + stride * jnp.minimum(along, n - 1)
-        return found
+                places = places + stride * jnp.minimum(along, n - 1)
+        return places
 
     def read(self, value: Value, size: int) -> Any:
         """Tile of an array from memory."""
         self._ready(value)
         ref, flat = self._ref(value), value.address.reshape(-1)
         if (flat == flat[0]).all():
-            found = jnp.broadcast_to(ref[pl.ds(int(flat[0]), 1)], (size,))
+            tile = jnp.broadcast_to(ref[pl.ds(int(flat[0]), 1)], (size,))
         elif (np.diff(flat) == 1).all():
-            found = ref[pl.ds(int(flat[0]), size)]
+            tile = ref[pl.ds(int(flat[0]), size)]
         else:
-            found = ref[self._places(value.address, size)]
-        return found != 0 if value.dtype == bool else found
+            tile = ref[self._places(value.address, size)]
+        return tile != 0 if value.dtype == bool else tile
 
     def tile(self, x: Any, size: int, dtype: Any) -> Any:
-        """Tile of an operand, from registers where it is there."""
+        """Tile of an operand, from registers if it is in them."""
         if not isinstance(x, Value):
             return jnp.full((size,), x, dtype)
-        own = self.plan.in_register(x)
-        if own is not None and id(own) in self.tiles:
-            found = self.tiles[id(own)]
-            return found if found.shape[0] == size else jnp.broadcast_to(found, (size,))
+        owner = self.plan.in_register(x)
+        if owner is not None and id(owner) in self.tiles:
+            tile = self.tiles[id(owner)]
+            return tile if tile.shape[0] == size else jnp.broadcast_to(tile, (size,))
         return self.read(x, size)
 
     def write(self, instruction: Instruction, index: Any) -> None:
-        """One instruction."""
+        """Write one instruction."""
         size = padded(instruction.value.address.size)
         if instruction.kind == "index":
-            found = jnp.full((1,), index, instruction.value.dtype)
+            tile = jnp.full((1,), index, instruction.value.dtype)
         elif instruction.kind == "contract":
-            found = self._contract(instruction, size)
+            tile = self._contract(instruction, size)
         elif instruction.kind == "lookup":
-            found = self._lookup(instruction, size)
+            tile = self._lookup(instruction, size)
         else:
             how = instruction.parameters
             tiles = [self.tile(x, size, dtype) for x, dtype in zip(instruction.operands, how["types"])]
             rounding = instruction.kind == "round"
-            found = _rounded(tiles[0], how) if rounding else how["primitive"].bind(*tiles, **how["parameters"])
-        self.tiles[id(instruction)] = found
+            tile = _rounded(tiles[0], how) if rounding else how["primitive"].bind(*tiles, **how["parameters"])
+        self.tiles[id(instruction)] = tile
         if instruction.stored:
-            kept = found.astype(jnp.int32) if instruction.value.dtype == bool else found
-            self.pools[instruction.value.pool][pl.ds(instruction.start, size)] = kept
+            stored = tile.astype(jnp.int32) if instruction.value.dtype == bool else tile
+            self.pools[instruction.value.pool][pl.ds(instruction.start, size)] = stored
             self._unread.add(id(instruction))
 
     def advance(self, index: Any, carried: Sequence[Value], results: Sequence[Value]) -> None:
-        """All instructions, and the results in the places that the next evaluation reads."""
+        """Write all instructions, and the results in the places that the next evaluation reads."""
         for instruction in self.plan.instructions:
             self.write(instruction, index)
-        found = [self.tile(x, padded(x.address.size), x.dtype) for x in results]
+        tiles = [self.tile(x, padded(x.address.size), x.dtype) for x in results]
         self.barrier()
-        for value, tile in zip(carried, found, strict=True):
+        for value, tile in zip(carried, tiles, strict=True):
             self.pools[value.pool][pl.ds(int(value.address.reshape(-1)[0]), tile.shape[0])] = tile
         self.barrier()
 
@@ -167,11 +167,11 @@ class Writer:
             return parts[0] if len(parts) == 1 else parts[0] * parts[1]
 
         if terms <= UNROLLED or how not in REDUCE:
-            found = None
+            combined = None
             for k in range(terms):
                 term = product([self.read(Value(x.dtype, x.address[..., k], None, x.stream), size) for x in operands])
-                found = term if found is None else COMBINE[how](found, term)
-            return found
+                combined = term if combined is None else COMBINE[how](combined, term)
+            return combined
         for x in operands:
             self._ready(x)
         if size * padded(terms) <= WIDE:
@@ -208,11 +208,11 @@ class Writer:
         how = instruction.parameters
         source: Value = how["source"]
         self._ready(source)
-        found = self._places(how["base"], size)
+        places = self._places(how["base"], size)
         for (stride, most), x in zip(how["steps"], instruction.operands):
-            place = self.tile(x, size, jnp.int32).astype(jnp.int32)
-            found = found + stride * jnp.minimum(jnp.maximum(place, 0), most)
-        return self._ref(source)[found]
+            index = self.tile(x, size, jnp.int32).astype(jnp.int32)
+            places = places + stride * jnp.minimum(jnp.maximum(index, 0), most)
+        return self._ref(source)[places]
 
 
 def _rounded(x: Any, how: dict[str, Any]) -> Any:

@@ -51,10 +51,10 @@ def plan(
     closed = jax.make_jaxpr(function)(*varying)
     made = Plan()
     index = made.add("index", (), {}, varying[0].shape, varying[0].dtype)
-    arguments = [index, *(made.room(one.shape, one.dtype) for one in varying[1:])]
-    consts = [one if isinstance(one, jax.core.Tracer) else np.asarray(one) for one in closed.consts]
-    found = walk(closed.jaxpr, consts, arguments, lambda equation, values: _bind(made, equation, values))
-    results = [one if isinstance(one, Value) else made.fixed(_array(one)) for one in found]
+    arguments = [index, *(made.room(argument.shape, argument.dtype) for argument in varying[1:])]
+    consts = [const if isinstance(const, jax.core.Tracer) else np.asarray(const) for const in closed.consts]
+    outputs = walk(closed.jaxpr, consts, arguments, lambda equation, values: _bind(made, equation, values))
+    results = [x if isinstance(x, Value) else made.fixed(_array(x)) for x in outputs]
     made.finish(results)
     return made, arguments, results
 
@@ -73,18 +73,18 @@ def _bind(made: Plan, equation: core.JaxprEqn, values: list[Any]) -> list[Any]:
         if not any(isinstance(x, jax.core.Tracer) for x in outside):
             with jax.ensure_compile_time_eval():
                 return [np.asarray(x) for x in apply(equation, [jnp.asarray(x) for x in outside])]
-        found = apply(equation, outside)
-        if name == "broadcast_in_dim" and found[0].size > outside[0].size:  # read again and again, not copied
+        computed = apply(equation, outside)
+        if name == "broadcast_in_dim" and computed[0].size > outside[0].size:  # read again and again, not copied
             source = values[0] if isinstance(values[0], Value) else made.fixed(outside[0])
-            return [Value(source.dtype, moved(equation, [source.address])[0], found[0])]
-        return found
+            return [Value(source.dtype, moved(equation, [source.address])[0], computed[0])]
+        return computed
     if name in IDENTITIES:
         return values
     if name in MOVES:
-        which = sources(equation)
-        where = [x for i, x in enumerate(outside) if i not in which]
+        moving = sources(equation)
+        where = [x for i, x in enumerate(outside) if i not in moving]
         if all(isinstance(x, np.ndarray) for x in where):
-            placed = [x if isinstance(x, Value) else made.fixed(_array(x)) for x in (values[i] for i in which)]
+            placed = [x if isinstance(x, Value) else made.fixed(_array(x)) for x in (values[i] for i in moving)]
             return [Value(placed[0].dtype, address) for address in moved(equation, [x.address for x in placed], where)]
     return [_instruction(made, equation, values)]
 
@@ -115,15 +115,15 @@ def _instruction(made: Plan, equation: core.JaxprEqn, values: list[Any]) -> Valu
         a, b = (placed(x) for x in values)
         sides = []
         for x, over, batch in ((a, over_a, batch_a), (b, over_b, batch_b)):
-            kept = [d for d in range(x.address.ndim) if d not in over and d not in batch]
-            size = [x.address.shape[d] for d in kept]
-            moved_ = np.transpose(x.address, (*batch, *kept, *over))
-            sides.append((moved_.reshape(*moved_.shape[: len(batch) + len(kept)], -1), len(batch), len(size)))
-        (left, count, own), (right, _, other) = sides
-        left = left.reshape(*left.shape[: count + own], *[1] * other, left.shape[-1])
-        right = right.reshape(*right.shape[:count], *[1] * own, *right.shape[count:])
-        left, right = np.broadcast_arrays(left, right)
-        return _contract(made, [Value(a.dtype, left), Value(b.dtype, right)], "add", out)
+            free = [d for d in range(x.address.ndim) if d not in over and d not in batch]
+            size = [x.address.shape[d] for d in free]
+            moved_ = np.transpose(x.address, (*batch, *free, *over))
+            sides.append((moved_.reshape(*moved_.shape[: len(batch) + len(free)], -1), len(batch), len(size)))
+        (lhs, count, lhs_free), (rhs, _, rhs_free) = sides
+        lhs = lhs.reshape(*lhs.shape[: count + lhs_free], *[1] * rhs_free, lhs.shape[-1])
+        rhs = rhs.reshape(*rhs.shape[:count], *[1] * lhs_free, *rhs.shape[count:])
+        lhs, rhs = np.broadcast_arrays(lhs, rhs)
+        return _contract(made, [Value(a.dtype, lhs), Value(b.dtype, rhs)], "add", out)
     if name in ("dynamic_slice", "gather"):
         return _lookup(made, equation, values, out)
     raise KernelError(f"the kernel cannot do {name} on {', '.join(str(x.aval) for x in equation.invars)}")
@@ -141,11 +141,11 @@ def _contract(made: Plan, operands: list[Value], how: str, out: Any) -> Value:
 
 def _lookup(made: Plan, equation: core.JaxprEqn, values: list[Any], out: Any) -> Value:
     """Elements of an array at indices that vary."""
-    array, own = values[0], values[0].traced if isinstance(values[0], Value) else _array(values[0])
-    if own is not None and isinstance(own, jax.core.Tracer) and own.size >= STREAMED:
-        array = made.stream(own)
+    array, outside = values[0], values[0].traced if isinstance(values[0], Value) else _array(values[0])
+    if outside is not None and isinstance(outside, jax.core.Tracer) and outside.size >= STREAMED:
+        array = made.stream(outside)
     elif not isinstance(array, Value):
-        array = made.fixed(own)
+        array = made.fixed(outside)
     shape = array.address.shape
     corner = array.address.reshape(-1)[0] if array.address.size else 0
     strides = [int(np.take(array.address, 1, d).reshape(-1)[0] - corner) if n > 1 else 0 for d, n in enumerate(shape)]

@@ -37,7 +37,7 @@ def linearised_rate(rate: Rate, driver: Any, d_driver: Any, by_state: Float[Arra
         return rate(eqx.combine(moved, still), time, state)[i]
 
     def heavy(i: int, time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Array, Array]:
-        value, transpose = jax.vjp(lambda *at: part(i, time, *at), state, moved)
+        value, transpose = jax.vjp(lambda *point: part(i, time, *point), state, moved)
         slope, by_moved = jax.vmap(transpose)(jnp.eye(value.shape[0]))
         columns = [leaf.reshape(value.shape[0], -1) for leaf in jax.tree.leaves(by_moved)]
         return slope if by_state is None else by_state, jnp.concatenate(columns, axis=1) @ along
@@ -48,10 +48,10 @@ def linearised_rate(rate: Rate, driver: Any, d_driver: Any, by_state: Float[Arra
             return slope, jnp.zeros(slope.shape[0])
         return slope, jax.jvp(lambda moved: part(i, time, state, moved), (moved,), (d_moved,))[1]
 
-    def at(time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Array, Array]:
-        parts = len(jax.eval_shape(rate, driver, time, state))
-        found = [heavy(i, time, state) if along.size and i == ACCELERATION else light(i, time, state) for i in range(parts)]
-        slope, push = zip(*found, strict=True)
+    def linearised(time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Array, Array]:
+        count = len(jax.eval_shape(rate, driver, time, state))
+        parts = [heavy(i, time, state) if along.size and i == ACCELERATION else light(i, time, state) for i in range(count)]
+        slope, push = zip(*parts, strict=True)
         return jnp.concatenate(slope), jnp.concatenate(push)
 
-    return at
+    return linearised

@@ -30,8 +30,8 @@ def in_float32(rate: Rate) -> Rate:
 
     def mixed(driver: Any, time: Any, y: Any) -> tuple[Any, ...]:
         closed = jax.make_jaxpr(lambda time, y: rate(driver, time, y))(time, y)
-        found = walk(closed.jaxpr, closed.consts, [time, y.astype(jnp.float32)], _bind)
-        return tuple(jnp.asarray(x).astype(y.dtype) for x in found)
+        results = walk(closed.jaxpr, closed.consts, [time, y.astype(jnp.float32)], _bind)
+        return tuple(jnp.asarray(x).astype(y.dtype) for x in results)
 
     return mixed
 
@@ -42,8 +42,8 @@ def _bind(equation: core.JaxprEqn, values: list[Any]) -> list[Any]:
     if name in APART or not any(_dtype(x) == jnp.float32 for x in values):
         return apply(equation, values)
     if name in WHOLE:
-        found = apply(equation, [_to(x, jnp.float32, type_of(atom).dtype) for x, atom in zip(values, equation.invars)])
-        return [_to(x, jnp.float64, jnp.float32) for x in found]
+        results = apply(equation, [_to(x, jnp.float32, type_of(atom).dtype) for x, atom in zip(values, equation.invars)])
+        return [_to(x, jnp.float64, jnp.float32) for x in results]
     changed = {
         key: jnp.dtype(jnp.float32)
         for key, value in equation.params.items()

@@ -55,9 +55,9 @@ def _step(driver, y, time, step, rate: Rate, scheme: Scheme, keep: bool):
     # one traced copy of the equation of motion for all stages: a fraction of the compilation
     def stage(slopes, row):
         index, node, coefficients = row
-        at = y + step * (coefficients @ slopes)
-        slope = jnp.concatenate(rate(driver, time + node * step, at))
-        return jax.lax.dynamic_update_index_in_dim(slopes, slope, index, 0), at if keep else None
+        state = y + step * (coefficients @ slopes)
+        slope = jnp.concatenate(rate(driver, time + node * step, state))
+        return jax.lax.dynamic_update_index_in_dim(slopes, slope, index, 0), state if keep else None
 
     rows = (jnp.arange(size), jnp.array(scheme.nodes), jnp.asarray(scheme.coefficients()))
     slopes, stages = jax.lax.scan(stage, jnp.zeros((size, y.shape[0])), rows)
@@ -65,14 +65,16 @@ def _step(driver, y, time, step, rate: Rate, scheme: Scheme, keep: bool):
 
 
 def _march(driver, y, start, step, count, rate: Rate, scheme: Scheme, capacity: int, keep: bool, shown: int | None = None):
-    """States (their first `shown` entries) at the ends of `count` steps, and if kept at the stages of each, in arrays for
-    `capacity` steps."""
+    """States after 0, 1 ... `count` steps, and if kept the states at the stages of every step.
+
+    The arrays have room for `capacity` steps. States after the steps are their first `shown` entries.
+    """
 
     def advance(index, carry):
         y, path, stages = carry
-        after, at = _step(driver, y, start + step * index, step, rate, scheme, keep)
+        after, states = _step(driver, y, start + step * index, step, rate, scheme, keep)
         path = jax.lax.dynamic_update_index_in_dim(path, y[:shown], index, 0)
-        return after, path, jax.lax.dynamic_update_index_in_dim(stages, at, index, 0) if keep else None
+        return after, path, jax.lax.dynamic_update_index_in_dim(stages, states, index, 0) if keep else None
 
     stages = jnp.zeros((capacity + 1, len(scheme.nodes), y.shape[0])) if keep else None
     carry = (y, jnp.zeros((capacity + 1, y[:shown].shape[0])), stages)
@@ -115,25 +117,25 @@ def forward(
 def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int, shown: int):
     """Tangents of a whole simulation from linearisations at every stage, several steps at once.
 
-    Once the path is known its linearisations do not depend on each other; what is left in sequence is one product of a
-    small matrix per step. The state's part is common to all parameters, so that initial states cost nothing more.
+    Once the path is known, its linearisations do not depend on each other. Only one product of a small matrix per step is left
+    in sequence. The state's part is common to all parameters, so that initial states cost nothing more.
     """
     driver, y, start, step, count = primals
     d_driver, d_y, *_ = tangents
     path, stages = _march(driver, y, start, step, count, rate, scheme, capacity, True, shown)
     assert stages is not None
     nodes, size, states = jnp.array(scheme.nodes), len(scheme.nodes), y.shape[0]
-    at = linearised_rate(rate, driver, d_driver)
+    linearised = linearised_rate(rate, driver, d_driver)
     batches = -(-(capacity + 1) // BATCH)
     stages = jnp.pad(stages, ((0, batches * BATCH - capacity - 1), (0, 0), (0, 0)))
     # the scheme applied to the linearised equation: d_y after a step = transfer d_y + drive
     eye, table = jnp.eye(states), scheme.coefficients()
 
     def batch(index, carry):
-        here = index * BATCH + jnp.arange(BATCH)
-        times = start + step * (here[:, None] + nodes)
-        some = jax.lax.dynamic_slice_in_dim(stages, index * BATCH, BATCH)
-        slope, push = jax.vmap(at)(times.reshape(-1), some.reshape(-1, states))
+        numbers = index * BATCH + jnp.arange(BATCH)
+        times = start + step * (numbers[:, None] + nodes)
+        points = jax.lax.dynamic_slice_in_dim(stages, index * BATCH, BATCH)
+        slope, push = jax.vmap(linearised)(times.reshape(-1), points.reshape(-1, states))
         slope, push = (x.reshape(BATCH, size, *x.shape[1:]) for x in (slope, push))
         matrices: list[Array] = []
         vectors: list[Array] = []
@@ -144,14 +146,14 @@ def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int
             vectors.append(push[:, i] + jnp.einsum("nij,nj->ni", slope[:, i], vector))
         transfer = eye + step * sum(b * m for b, m in zip(scheme.weights, matrices, strict=True))
         drive = step * sum(b * v for b, v in zip(scheme.weights, vectors, strict=True))
-        d_y, found = carry
+        d_y, d_path = carry
         d_y, taken = jax.lax.scan(lambda d, now: (now[0] @ d + now[1], d[:shown]), d_y, (transfer, drive))
-        return d_y, jax.lax.dynamic_update_slice_in_dim(found, taken, index * BATCH, 0)
+        return d_y, jax.lax.dynamic_update_slice_in_dim(d_path, taken, index * BATCH, 0)
 
     d_y = jnp.zeros_like(y) if d_y is None else d_y
-    found = jnp.zeros((batches * BATCH, shown))
-    _, found = jax.lax.fori_loop(0, (count + BATCH) // BATCH, batch, (d_y, found))
-    return path, found[: capacity + 1]
+    d_path = jnp.zeros((batches * BATCH, shown))
+    _, d_path = jax.lax.fori_loop(0, (count + BATCH) // BATCH, batch, (d_y, d_path))
+    return path, d_path[: capacity + 1]
 
 
 def backward(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capacity: int) -> Float[Array, "n s"]:

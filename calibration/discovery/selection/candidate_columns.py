@@ -11,12 +11,12 @@ from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
 from calibration.discovery.fit_state import FitState
 from calibration.discovery.linearisations import Linearisation
+from calibration.discovery.record_simulations import KnownSlopes
 from calibration.discovery.search import ListedVariant
 from calibration.discovery.selection.candidate_passes import CandidateValues, first_passes, is_nearly_known, jobs_of, packed
 from calibration.discovery.selection.linear_model import LinearModel
 from calibration.discovery.selection.study_linear_model import linear_model
 from calibration.discovery.selection.subsets import Variant
-from calibration.discovery.study import KnownSlopes
 
 LABORATORY_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position", "static_offset")
 LABORATORY_LOG_ODDS, PHYSICS_LOG_ODDS = math.log(0.05), math.log(0.02)  # one effect is expected, among some forty
@@ -97,20 +97,20 @@ def candidate_columns(
     active = look.active if anew is None else tuple(anew)
     jobs = jobs_of(fits, look.place, active, first)
     looks = []
-    known: KnownSlopes = {}
+    by_state: KnownSlopes = {}
     if anew is not None or jobs:
-        place, others = jobs[0] if jobs else (look.place, ())
+        point, others = jobs[0] if jobs else (look.place, ())
         # neutral candidates move nothing, whatever their shapes: the model and the first of them are one linearisation
-        [whole] = study.linearise_all([(place, others if anew is None else (*active, *others))], keep=known)
+        [whole] = study.linearise_all([(point, others if anew is None else (*active, *others))], keep=by_state)
         looks = [whole.restricted_to(others)] if jobs else []
         look = look if anew is None else replace(whole.restricted_to(active), place=look.place)
-    varied = [label for one in fits.setup.candidates if one.has_variants for label in one.amplitudes]
+    varied = [label for candidate in fits.setup.candidates if candidate.has_variants for label in candidate.amplitudes]
     moving = study.index(list(dict.fromkeys(varied)))
-    looks += study.linearise_neutral(jobs[1:], known, moving)
+    looks += study.linearise_neutral(jobs[1:], by_state, moving)
     gathered = _Columns(fits, look)
     gathered.add_linearised(chosen, candidates)
     last = packed([*gathered.take(first, looks), *later], study.width)
-    gathered.take(last, study.linearise_neutral(jobs_of(fits, look.place, active, last), known, moving))
+    gathered.take(last, study.linearise_neutral(jobs_of(fits, look.place, active, last), by_state, moving))
     return gathered.columns()
 
 

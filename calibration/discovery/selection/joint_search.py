@@ -46,7 +46,7 @@ class JointSearch(Search):
 
     def __init__(self, campaign: Campaign, setup: StudySetup, say: ReportStage) -> None:
         super().__init__(campaign, setup, say)
-        self.candidates = {one.name: one for one in setup.candidates}
+        self.candidates = {candidate.name: candidate for candidate in setup.candidates}
         self.columns: CandidateColumns
         self.selector: JointSelection
         self.probability: dict[str, float] = {}
@@ -58,8 +58,8 @@ class JointSearch(Search):
     def select(self, state: FitState, number: int, required: frozenset[str]) -> Subset:
         """Linearise a state along all candidates, and select.
 
-        The laboratory comes first: where mistakes of it are among the effects that the baseline lacks, those alone are
-        selected, jointly. Real seas pull any law of physics to wherever it stands for them.
+        Mistakes of the laboratory come first. If the baseline lacks some of them, they alone are selected, jointly.
+        In real seas, any law of physics would otherwise be pulled to where it stands for them.
 
         Args:
             state: The fitted model.
@@ -70,33 +70,33 @@ class JointSearch(Search):
             The most probable subset.
         """
         among = self.shortlist if number > WHOLE_ROUNDS and self.shortlist else None
-        count = len(self.setup.candidates if among is None else {one.name for one in among})
+        count = len(self.setup.candidates if among is None else {variant.name for variant in among})
         self.say(f"round {number}: linearising along {count} effects", self.share(number - 1))
         self.columns = columns = linearise_candidates(self, state, among)
 
-        def told(count: int) -> None:
+        def report(count: int) -> None:
             self.say(f"round {number}: comparing sets of effects", self.share(number - 0.6), count)
 
-        told(0)
-        self.selector = self.selection(columns, told, required=required)
+        report(0)
+        self.selector = self.selection(columns, report, required=required)
         present = columns.present(state.chosen)
-        found = self.selector.run(present)
-        self.probability = found.probability()
+        selection = self.selector.run(present)
+        self.probability = selection.probability()
         self.score(self.selector.subset(present), number)
         if among is None:
-            probable = {i for one in found.subsets for i in one.variants}
-            self.shortlist += columns.listed(probable | self.selector.helpful(found.best))
-        best, laboratory = found.best, columns.laboratory
+            probable = {i for subset in selection.subsets for i in subset.variants}
+            self.shortlist += columns.listed(probable | self.selector.helpful(selection.best))
+        best, laboratory = selection.best, columns.laboratory
         mine = laboratory.intersection(best.variants)
         if state.chosen or not mine or mine == set(best.variants):
             return best
-        alone = self.selection(columns, told, sorted(laboratory)).run().best
+        alone = self.selection(columns, report, sorted(laboratory)).run().best
         return alone if alone.variants else best
 
     def selection(
         self,
         columns: CandidateColumns,
-        told: Callable[[int], None],
+        report: Callable[[int], None],
         among: Sequence[int] | None = None,
         required: frozenset[str] = frozenset(),
     ) -> JointSelection:
@@ -104,7 +104,7 @@ class JointSearch(Search):
 
         Args:
             columns: The linear model.
-            told: Called with the number of subsets that were fitted.
+            report: Called with the number of subsets that were fitted.
             among: Variants that may be selected; None: all.
             required: Names of effects that the subset has to have.
         """
@@ -112,10 +112,10 @@ class JointSearch(Search):
 
         def matters(before: np.ndarray, after: np.ndarray) -> bool:
             without, with_it = (ResidualSummary.of(study, residual) for residual in (before, after))
-            share, some = HeldOutComparison(study, study.used, without, with_it, False).error_reduction()
-            return not some or share >= MIN_HELD_OUT_SHARE
+            share, reducible = HeldOutComparison(study, study.used, without, with_it, False).error_reduction()
+            return not reducible or share >= MIN_HELD_OUT_SHARE
 
-        return JointSelection(columns.model, columns.base, columns.variants, columns.series, told, matters, among, required)
+        return JointSelection(columns.model, columns.base, columns.variants, columns.series, report, matters, among, required)
 
     def score(self, subset: Subset, number: int) -> None:
         """Record the first-order gain of every candidate beside a subset, in a round."""
@@ -123,10 +123,11 @@ class JointSearch(Search):
         for i, gain in self.selector.first_order_gains(subset).items():
             name = self.columns.variants[i].name
             best[name] = max(best.get(name, 0.0), gain)
-        self.scores = [one for one in self.scores if one.round != number]
+        self.scores = [score for score in self.scores if score.round != number]
         for name, gain in sorted(best.items(), key=lambda item: -item[1]):
-            one = self.candidates[name]
-            self.scores.append(Score(number, one.effect, one.dof, gain, len(one.amplitudes), float("nan"), None, None))
+            candidate = self.candidates[name]
+            size = len(candidate.amplitudes)
+            self.scores.append(Score(number, candidate.effect, candidate.dof, gain, size, float("nan"), None, None))
 
     def fit_subset(
         self,
@@ -147,28 +148,28 @@ class JointSearch(Search):
             share: Progress to report (0 to 1).
             tolerance: Relative gain in cost of a step that ends the fit.
         """
-        place = state.look.place
+        point = state.look.place
         chosen = tuple(self.candidates[columns.variants[i].name] for i in subset.variants)
-        present = {one.name for one in state.chosen}
-        gone = [label for one in state.chosen if one not in chosen for label in one.labels]
-        place, anew = self.with_starting_values(place, gone) if gone else place, False
-        for i, one in zip(subset.variants, chosen, strict=True):
-            if one.name not in present:
-                place = self.with_values(place, columns.values[i])
-                anew |= any(label in one.amplitudes for label in columns.values[i])
+        present = {candidate.name for candidate in state.chosen}
+        gone = [label for candidate in state.chosen if candidate not in chosen for label in candidate.labels]
+        point, anew = self.with_starting_values(point, gone) if gone else point, False
+        for i, candidate in zip(subset.variants, chosen, strict=True):
+            if candidate.name not in present:
+                point = self.with_values(point, columns.values[i])
+                anew |= any(label in candidate.amplitudes for label in columns.values[i])
         mine = [i for i in subset.fit.columns if i in columns.base or columns.directions[i] not in self.base]
         directions = tuple(columns.directions[i] for i in mine)
         if anew:  # far from where slopes were taken
-            look = self.study.linearise(place, directions)
+            look = self.study.linearise(point, directions)
         else:
-            residual = self.study.residual(place) if gone else columns.look.residual
+            residual = self.study.residual(point) if gone else columns.look.residual
             slopes = columns.model.slopes[:, mine]
-            look = Linearisation(place, directions, residual, slopes, columns.look.own)
+            look = Linearisation(point, directions, residual, slopes, columns.look.own)
             moved = np.array(columns.directions)[list(subset.fit.columns)]  # nearly known properties have two columns
             step = np.array([subset.fit.step[moved == i].sum() for i in directions])
-            own = step_of_decays(self.study, columns.look, subset.fit.own)
-            look = far_step(self.study, look, self.study.used, self.prior(chosen), step, own)
-        names = listed([effect_in_words(one.name) for one in chosen]) or "no effect"
+            own_step = step_of_decays(self.study, columns.look, subset.fit.own)
+            look = far_step(self.study, look, self.study.used, self.prior(chosen), step, own_step)
+        names = listed([effect_in_words(candidate.name) for candidate in chosen]) or "no effect"
         reached = self.fit(look, chosen, STEP_ITERATIONS, 0, f"{stage}: fit with {names}", share, tolerance)
         return self.state(chosen, reached)
 
@@ -184,7 +185,7 @@ class JointSearch(Search):
             names: Names of the effects.
         """
         variants: dict[str, int] = {}
-        for subset in sorted(self.selector.fitted.values(), key=lambda one: one.evidence):
+        for subset in sorted(self.selector.fitted.values(), key=lambda fitted: fitted.evidence):
             variants |= {name: i for i in subset.variants if (name := self.columns.variants[i].name) in names}
         return self.selector.subset(sorted(variants.values()))
 
@@ -196,8 +197,8 @@ class JointSearch(Search):
     def search(self, states: list[FitState], reach: Callable[[FitState], None]) -> FitState:
         """Select and move until the selection stays.
 
-        Where sets alternate, none is the answer: after `FREE_ROUNDS` every set has the effects that more than half of the sets
-        before it have.
+        Where sets alternate, none of them is the answer. After `FREE_ROUNDS` every set has the effects that more than half of
+        the sets before it have.
 
         Args:
             states: The fitted baseline, and what earlier rounds reached.
@@ -208,21 +209,21 @@ class JointSearch(Search):
         """
         if len(states) == 1 and (better := self.with_split_modes(states[0])) is not None:
             states.append(better)
-        state, visited = states[-1], {frozenset(one.name for one in some.chosen) for some in states}
+        state, visited = states[-1], {frozenset(candidate.name for candidate in earlier.chosen) for earlier in states}
         for number in range(len(states), MAX_ROUNDS + 1):
-            sets = whole_sets([some.chosen for some in states[1:]])
+            sets = whole_sets([earlier.chosen for earlier in states[1:]])
             best = self.select(state, number, majority(sets) if number > FREE_ROUNDS else frozenset())
             names = frozenset(self.columns.variants[i].name for i in best.variants)
-            if not names or names == {one.name for one in state.chosen}:
+            if not names or names == {candidate.name for candidate in state.chosen}:
                 break
             if names in visited or number == MAX_ROUNDS:
-                kept = self.with_shapes(majority([*sets, names]))
-                state = self.fit_subset(state, self.columns, kept, f"round {number}", self.share(number))
+                subset = self.with_shapes(majority([*sets, names]))
+                state = self.fit_subset(state, self.columns, subset, f"round {number}", self.share(number))
                 break
             visited.add(names)
             stage, share = f"round {number}", self.share(number - 0.5)
             before, state = state, self.fit_subset(state, self.columns, best, stage, share, REFIT_TOLERANCE)
-            if names <= {one.name for one in before.chosen} and self.as_predicted(state, best):
+            if names <= {candidate.name for candidate in before.chosen} and self.as_predicted(state, best):
                 break  # effects have gone; slopes elsewhere would tell nothing else
             reach(state)
         if state.chosen:
@@ -230,30 +231,35 @@ class JointSearch(Search):
         return state
 
     def with_split_modes(self, baseline: FitState) -> FitState | None:
-        """The model with an oscillator that splits a mode of a decay, far from where slopes lead; None without one.
+        """Fit an oscillator that splits a mode of a decay, far from where slopes lead.
 
         Args:
             baseline: The fitted baseline.
+
+        Returns:
+            The likeliest model with such an oscillator, or None if none is likelier than the baseline by
+            more than `MIN_LIKELIHOOD_GAIN`.
         """
-        place = self.with_starting_values(baseline.look.place, self.setup.base)
+        point = self.with_starting_values(baseline.look.place, self.setup.base)
         base, width = self.study.index(self.setup.base), self.setup.prior.width
-        found = [baseline]
-        for one in self.setup.candidates:
-            starts = () if one.starting_values_finder is None else one.starting_values_finder(self.study, place, base, width)
+        states = [baseline]
+        for candidate in self.setup.candidates:
+            finder = candidate.starting_values_finder
+            starts = () if finder is None else finder(self.study, point, base, width)
             for values in starts:
-                look = self.study.linearise(self.with_values(place, values), self.active((one,)))
-                found.append(self.refit(look, (one,), f"trial of {effect_in_words(one.name)}", BEGIN))
-        best = self.likeliest(*found)
+                look = self.study.linearise(self.with_values(point, values), self.active((candidate,)))
+                states.append(self.refit(look, (candidate,), f"trial of {effect_in_words(candidate.name)}", BEGIN))
+        best = self.likeliest(*states)
         return best if self.likelihood_gain(baseline, best) > MIN_LIKELIHOOD_GAIN else None
 
 
 def whole_sets(chosen: Sequence[Sequence[Candidate]]) -> list[frozenset[str]]:
-    """Names of the effects that rounds selected, without a first round that took the laboratory's mistakes alone."""
-    sets = [frozenset(one.name for one in some) for some in chosen]
-    partial = len(sets) > 1 and all(one.effect in LABORATORY_EFFECTS for one in chosen[0])
+    """Names of the effects that rounds selected, without a first round of laboratory mistakes alone."""
+    sets = [frozenset(candidate.name for candidate in effects) for effects in chosen]
+    partial = len(sets) > 1 and all(candidate.effect in LABORATORY_EFFECTS for candidate in chosen[0])
     return sets[1:] if partial else sets
 
 
 def majority(sets: Sequence[frozenset[str]]) -> frozenset[str]:
     """The names that more than half of some sets have."""
-    return frozenset(name for name in frozenset().union(*sets) if 2 * sum(name in one for one in sets) > len(sets))
+    return frozenset(name for name in frozenset().union(*sets) if 2 * sum(name in names for names in sets) > len(sets))
