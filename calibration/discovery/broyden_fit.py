@@ -15,7 +15,8 @@ import numpy as np
 
 from calibration.discovery.eliminated_least_squares import cost_of, damped_step, linear_residual, row_weights
 from calibration.discovery.linearisations import Linearisation, Point, Prior
-from calibration.discovery.study import OVERFLOW, Study
+from calibration.discovery.record_simulations import OVERFLOW
+from calibration.discovery.study import Study
 from jaxhydro.interrupts import stop_if_asked
 
 MAX_LOG_STEP = 0.7  # largest step of a logarithmic coordinate

@@ -115,7 +115,7 @@ class RecordSimulations:
             return self._slopes(pool, workers, point, active, seas, by_state=by_state, moved=moved)
 
         with stoppable_threads(cores()) as pool, stoppable_threads(cores()) as workers:
-            return self._gathered(jobs, COMPARED_AT_ONCE, begin)
+            return self._gathered(jobs, min(COMPARED_AT_ONCE, self.width - 1), begin)  # one column is for all that moves
 
     def time_slopes(self, point: Point, active: Sequence[int]) -> list[np.ndarray]:
         """Slopes of all motions in time along some directions.

@@ -10,7 +10,6 @@ import numpy as np
 from calibration.campaign.records import Record
 from calibration.discovery.frequency_bands import FourierRows, step_of
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, SeaSelection
-from calibration.discovery.record_simulations import OVERFLOW as OVERFLOW  # for fits
 from calibration.discovery.record_simulations import KnownSlopes, LinearisationJob, RecordSimulations
 from calibration.discovery.residuals import SeaRecord
 from calibration.parameters.space import ParameterSpace
