@@ -5,8 +5,8 @@ The jit functions are for programs that run a few times, or in threads.
 
 import threading
 from collections.abc import Callable, Hashable
-from functools import wraps
-from typing import ParamSpec, TypeVar
+from functools import update_wrapper, wraps
+from typing import Any, Generic, ParamSpec, TypeVar
 
 import equinox as eqx
 import jax
@@ -41,7 +41,39 @@ def quick_jit(fun: Callable[P, R]) -> Callable[P, R]:
     return compiled
 
 
-def jit_once(fun: Callable[P, R]) -> Callable[P, R]:
+class JitOnce(Generic[P, R]):
+    """Function of `jit_once`."""
+
+    def __init__(self, fun: Callable[P, R]) -> None:
+        update_wrapper(self, fun)
+        self._jitted: Callable[P, R] = eqx.filter_jit(fun)
+        self._lock, self._compiled = threading.Lock(), set[Hashable]()
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        key = self._key(args, kwargs)
+        if key in self._compiled:
+            return self._jitted(*args, **kwargs)
+        with self._lock:
+            result = self._jitted(*args, **kwargs)
+            self._compiled.add(key)
+        return result
+
+    def prepare(self, *args: P.args, **kwargs: P.kwargs) -> None:
+        """Compile the program of some arguments, unless it is compiled. It runs once, for nothing."""
+        key = self._key(args, kwargs)
+        with self._lock:
+            if key not in self._compiled:
+                self._jitted(*args, **kwargs)
+                self._compiled.add(key)
+
+    @staticmethod
+    def _key(args: tuple[Any, ...], kwargs: dict[str, Any]) -> Hashable:
+        """What programs differ by: structure, shapes and types of arrays, all other values."""
+        leaves, structure = jax.tree.flatten((args, kwargs))
+        return structure, *((leaf.shape, leaf.dtype) if eqx.is_array(leaf) else leaf for leaf in leaves)
+
+
+def jit_once(fun: Callable[P, R]) -> JitOnce[P, R]:
     """`equinox.filter_jit` that compiles once when several threads ask for the same program.
 
     JAX compiles it in every thread that calls before the first compilation has ended.
@@ -49,22 +81,7 @@ def jit_once(fun: Callable[P, R]) -> Callable[P, R]:
     Args:
         fun: The function.
     """
-    jitted: Callable[P, R] = eqx.filter_jit(fun)
-    lock, compiled = threading.Lock(), set[Hashable]()
-
-    @wraps(fun)
-    def alone_at_first(*args: P.args, **kwargs: P.kwargs) -> R:
-        leaves, structure = jax.tree.flatten((args, kwargs))
-        kinds = ((leaf.shape, leaf.dtype) if eqx.is_array(leaf) else leaf for leaf in leaves)
-        key = (structure, *kinds)
-        if key in compiled:
-            return jitted(*args, **kwargs)
-        with lock:
-            result = jitted(*args, **kwargs)
-            compiled.add(key)
-        return result
-
-    return alone_at_first
+    return JitOnce(fun)
 
 
 def on_device(values: ArrayLike) -> jax.Array:

@@ -83,8 +83,11 @@ def sea_slopes(
     begin = _begin(record, frame)
     if by_state is not None:
         begin = _few(begin, COMPARED_AT_ONCE)
+    # compiled while the simulation is compiled and runs
+    at_rest = jnp.broadcast_to(begin.state, (_whole_segments(evaluations(record.steps + EXTRA_STEPS + 1)), len(begin.state)))
+    pool.submit(_linearised.prepare, record, begin, at_rest, jnp.asarray(0), None if by_state is None else by_state[0])
     path, states = _simulated(record, begin.model, begin.state, steps)
-    needed = -(-int(evaluations(count + EXTRA_STEPS + 1)) // SEGMENT)
+    needed = _whole_segments(int(evaluations(count + EXTRA_STEPS + 1))) // SEGMENT
     tangent, parts = jax.vmap(Tangent.begin)(begin.d_state), []
     for i, (slope, push) in enumerate(_segments(record, begin, states, needed, pool, by_state)):
         tangent, d_motion = _followed(tangent, jnp.asarray(i * SEGMENT), slope, push, record.step)
@@ -159,7 +162,12 @@ def _simulated(
     clock = (record.times[0], record.step, count + EXTRA_STEPS)
     capacity = record.steps + EXTRA_STEPS
     path, states = march((model, record.sea), state, *clock, rate_of(unravel), capacity, keep=True, shown=MOTION_SIZE)
-    return path, jnp.pad(states, ((0, -len(states) % SEGMENT), (0, 0)), mode="edge")
+    return path, jnp.pad(states, ((0, _whole_segments(len(states)) - len(states)), (0, 0)), mode="edge")
+
+
+def _whole_segments(count: int) -> int:
+    """Number of evaluations, made whole segments."""
+    return -(-count // SEGMENT) * SEGMENT
 
 
 @jit_once

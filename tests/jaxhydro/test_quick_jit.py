@@ -32,3 +32,6 @@ def test_threads_share_one_compilation() -> None:
     assert sorted(traced) == [2, 3]
     raised(Scaled(jnp.asarray(2.0), 2), jnp.arange(4.0))  # of another shape
     assert sorted(traced) == [2, 2, 3]
+    for _ in range(2):
+        raised.prepare(Scaled(jnp.asarray(2.0), 4), jnp.arange(4.0))
+    assert traced.count(4) == 1
