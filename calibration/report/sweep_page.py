@@ -25,9 +25,9 @@ FIGURES = {
 STATISTICS = {
     "mean": "Mean",
     "standard_deviation": "Standard deviation",
-    "standard_deviation_spread": "Spread of it",
+    "standard_deviation_spread": "Its spread over seeds",
     "maximum_of_seed": "Maximum of a seed",
-    "maximum_spread": "Spread of that",
+    "maximum_spread": "Its spread over seeds",
     "minimum_of_seed": "Minimum of a seed",
     "maximum": "Maximum of all",
     "minimum": "Minimum of all",
@@ -61,12 +61,12 @@ def summary_of(saved: SweepResults) -> SweepSummary:
 def sweep_sentence(summary: SweepSummary) -> str:
     """A sweep in one sentence.
 
-    "All 48 runs done; extremes over the life: surge -2.1 to 12.3 m and pitch -1.0 to 4.2 deg."
+    "All 48 runs done. Extremes over the life: surge -2.1 to 12.3 m and pitch -1.0 to 4.2 deg."
     """
     done, total = summary.done, summary.total
     runs = f"{'All ' * (total > 1)}{counted(total, 'run')} done" if done == total else f"{done} of {total} runs done"
     extremes = [f"{name} {number(low, 3)} to {number(high, 3)} {unit}" for name, (low, high, unit) in summary.extremes.items()]
-    return f"{runs}; extremes over the life: {joined(extremes)}." if extremes and done else f"{runs}."
+    return f"{runs}. Extremes over the life: {joined(extremes)}." if extremes and done else f"{runs}."
 
 
 def page(saved: SweepResults, folder: Path) -> str:

@@ -12,7 +12,7 @@ from scipy.stats import chi2
 
 from calibration.fitting.levenberg_marquardt import descend
 from calibration.fitting.normal_equations import ArrowMatrix, LeastSquares, normal_equations
-from calibration.formatting import number
+from calibration.formatting import number, readable_unit
 from calibration.residuals.abstract_residual import Unknowns
 from calibration.uncertainty.likelihood import DEFAULT_LEVEL, Likelihood
 from jaxhydro.interrupts import stop_if_asked
@@ -66,7 +66,7 @@ class Profile:
         return (self.lower is None or value >= self.lower) and (self.upper is None or value <= self.upper)
 
     def __str__(self) -> str:
-        unit = "" if self.unit == "-" else f" {self.unit}"
+        unit = f" {shown}" if (shown := readable_unit(self.unit)) else ""
         low, high = ("" if x is None else number(x, 3) for x in self.interval)
         if not low and not high:
             return f"{self.label}: the records bound it on neither side"

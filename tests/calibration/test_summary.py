@@ -121,7 +121,7 @@ def test_intervals_in_one_sentence() -> None:
 
 def test_a_sweep_in_one_sentence() -> None:
     extremes = {"surge": (-2.11, 12.34, "m"), "pitch": (-1.0, 4.2, "deg")}
-    expected = "All 48 runs done; extremes over the life: surge -2.11 to 12.3 m and pitch -1.00 to 4.20 deg."
+    expected = "All 48 runs done. Extremes over the life: surge -2.11 to 12.3 m and pitch -1.00 to 4.20 deg."
     assert sweep_sentence(SweepSummary(48, 48, extremes)) == expected
     assert sweep_sentence(SweepSummary(48, 46, {})) == "46 of 48 runs done."
     assert sweep_sentence(SweepSummary(1, 1, {})) == "1 run done."
