@@ -1,4 +1,4 @@
-"""The README's picture: slow surge of a sea that was not fitted, from a diagnosis of FOCAL campaign 2 with its tables.
+"""The README's picture: slow surge of a sea that was not fitted, from a diagnosis of FOCAL campaign 2.
 
     python -m benchmarks.readme_figure FOLDER
 

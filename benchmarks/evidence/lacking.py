@@ -19,7 +19,7 @@ CASES = {
     "focal-c2": "FOCAL campaign 2, three seas, the highest held out",
     "focal-c2-tables": "FOCAL campaign 2, the hull's WAMIT tables (`radiation`, `excitation`, `drift`) among the candidates",
 }
-DRAWN = "focal-c2-tables"
+DRAWN = "focal-c2"
 SHOWN = 1500.0  # s, of the sea that was held out
 TABLES = {"radiation": "semi.1", "excitation": "semi.3", "drift": "semi.12d"}
 MOTIONS = ("surge", "heave", "pitch")
@@ -128,7 +128,7 @@ def draw(name: str, path: Path) -> None:
     campaign = load_campaign(campaign_of(name))
     held = next(test for test in campaign.manifest.tests if test.use == "holdout" and test.kind == "irregular")
     looks = {"measured": (MEASURED, 1.3), "before": (BEFORE, 1.0), "simulated": (SIMULATED, 0.8)}
-    names = {"measured": "measured", "before": "declared", "simulated": "with what was found"}
+    names = {"measured": "measured", "before": "baseline", "simulated": "with what was found"}
     with xr.open_dataset(written_to(name) / "simulated.nc") as motion, style():
         here = motion.sel(test=held.id)
         time = here.time.values - here.time.values[0]

@@ -198,7 +198,7 @@ class JointSearch(Search):
         """Select and move until the selection stays.
 
         Where sets alternate, none of them is the answer. After `FREE_ROUNDS` every set has the effects that more than half of
-        the sets before it have. The search ends when these stay the same.
+        the sets before it have.
 
         Args:
             states: The fitted baseline, and what earlier rounds reached.
@@ -216,9 +216,8 @@ class JointSearch(Search):
             names = frozenset(self.columns.variants[i].name for i in best.variants)
             if not names or names == {candidate.name for candidate in state.chosen}:
                 break
-            common = majority([*sets, names])
-            if names in visited or number == MAX_ROUNDS or (number > FREE_ROUNDS and common == majority(sets)):
-                subset = self.with_shapes(common)
+            if names in visited or number == MAX_ROUNDS:
+                subset = self.with_shapes(majority([*sets, names]))
                 state = self.fit_subset(state, self.columns, subset, f"round {number}", self.share(number))
                 break
             visited.add(names)
