@@ -78,7 +78,7 @@ def test_a_page_of_them_says_what_falls_short():
     section = conclude(RESULTS, 0, Path("none.png"))
     for words in (
         "named first in 3 of 6",
-        "missing in 2 of 6; in 3 of 6",
+        "that value in 2 of 6. In 3 of 6",
         "named [current] 2.00",
         "static_offset or it 1.00",
         "Of 1 weak effects: 1 unexplained.",

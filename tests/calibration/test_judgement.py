@@ -429,7 +429,7 @@ def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(select
             asked.append("".join(sorted(required)))
             return subset(next(rounds))
 
-        def fit_subset(self, state, columns, one, stage, share):
+        def fit_subset(self, state, columns, one, stage, share, *tolerance):
             return State(tuple(Effect(names[i]) for i in one.variants))
 
         def as_predicted(self, state, one):
