@@ -11,10 +11,12 @@ from scipy.optimize import minimize
 
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.search import ListedVariant
+from calibration.discovery.selection import bounded_quadratic
+from calibration.discovery.selection.bounded_quadratic import bounded_minimum
 from calibration.discovery.selection.candidate_passes import is_listed
 from calibration.discovery.selection.cross_validation import held_out_gain, left_out_deviances
 from calibration.discovery.selection.joint_selection import MAX_EFFECTS, JointSelection
-from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, bounded_minimum
+from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel
 from calibration.discovery.selection.pooled_products import OwnUnknowns
 from calibration.discovery.selection.subsets import Selection, Variant
 
@@ -145,6 +147,19 @@ def test_a_minimum_at_a_bound_is_at_it_to_the_last_digit(seed: int) -> None:
     assert (np.abs(found) == high).sum() >= 3
     at, gradient = np.abs(found) == high, matrix @ found + slope
     assert (gradient[at] * found[at] < 0).all() and np.abs(gradient[~at]).max(initial=0.0) < 1e-6 * np.abs(slope).max()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_bounds_exchanged_together_are_those_exchanged_one_by_one(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(seed)
+    root = random.standard_normal((40, 20)) * 10.0 ** random.uniform(-3, 3, 20)
+    matrix, slope = root.T @ root, 20 * root.T @ random.standard_normal(40)
+    high = np.where(random.random(20) < 0.5, np.inf, random.uniform(0.01, 1, 20) / np.sqrt(np.diag(matrix)))
+    low = -random.permutation(high)
+    together = bounded_minimum(matrix, slope, low, high)
+    assert ((together == low) | (together == high)).any()
+    monkeypatch.setattr(bounded_quadratic, "active_set", lambda *_: None)
+    np.testing.assert_allclose(together, bounded_minimum(matrix, slope, low, high), rtol=1e-7)
 
 
 def test_an_effect_that_hardly_matters_is_not_selected() -> None:

@@ -20,7 +20,8 @@ from itertools import chain, islice, takewhile
 
 import numpy as np
 
-from calibration.discovery.selection.linear_model import LinearModel, bounded_minimum
+from calibration.discovery.selection.bounded_quadratic import bounded_minimum
+from calibration.discovery.selection.linear_model import LinearModel
 from calibration.discovery.selection.subsets import Selection, Subset, Variant, bagged_posterior
 from calibration.identifiability.information import pseudo_inverse
 from jaxhydro.interrupts import stop_if_asked

@@ -17,13 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.optimize import lsq_linear
 
+from calibration.discovery.selection.bounded_quadratic import RIDGE, bounded_minimum
 from calibration.discovery.selection.pooled_products import OwnUnknowns, PooledProducts, WeightedSums
 
 REWEIGHTINGS = 12  # updates of the weights at most
 SMALL_CHANGE = 0.01  # of -2 ln L: an update that changes less is the last
-RIDGE = 1e-12  # of the diagonal: dependent columns stay solvable
 
 
 class LinearFit(NamedTuple):
@@ -240,20 +239,3 @@ class LinearModel:
     def used(self) -> np.ndarray:
         """Which pools count (p,)."""
         return self.freedom > 0
-
-
-def bounded_minimum(matrix: np.ndarray, slope: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Minimum of x^T matrix x / 2 + slope^T x within bounds."""
-    scale = 1 / np.sqrt(np.diag(matrix))
-    both = matrix * np.outer(scale, scale)
-    both[np.diag_indices_from(both)] += RIDGE
-    step = -scale * np.linalg.solve(both, scale * slope)
-    if (step >= low).all() and (step <= high).all():
-        return step
-    size, directions = np.linalg.eigh(both)
-    roots = np.sqrt(np.maximum(size, RIDGE * size[-1]))  # rounding makes eigenvalues of dependent columns negative
-    root = roots[:, None] * directions.T
-    target = -(directions.T @ (scale * slope)) / roots
-    solution = lsq_linear(root, target, (low / scale, high / scale), method="bvls", tol=1e-12)
-    inside = np.clip(scale * solution.x, low, high)
-    return np.where(solution.active_mask > 0, high, np.where(solution.active_mask < 0, low, inside))
