@@ -59,7 +59,7 @@ class JitOnce(Generic[P, R]):
         return result
 
     def prepare(self, *args: P.args, **kwargs: P.kwargs) -> None:
-        """Compile the program of some arguments, unless it is compiled. It runs once, for nothing."""
+        """Compile the program of some arguments, unless it is compiled: it runs once, and the result is dropped."""
         key = self._key(args, kwargs)
         with self._lock:
             if key not in self._compiled:

@@ -83,7 +83,7 @@ def sea_slopes(
     begin = _begin(record, frame)
     if by_state is not None:
         begin = _few(begin, COMPARED_AT_ONCE)
-    # compiled while the simulation is compiled and runs
+    # the linearisation is compiled while the simulation is compiled and runs
     at_rest = jnp.broadcast_to(begin.state, (_whole_segments(evaluations(record.steps + EXTRA_STEPS + 1)), len(begin.state)))
     pool.submit(_linearised.prepare, record, begin, at_rest, jnp.asarray(0), None if by_state is None else by_state[0])
     path, states = _simulated(record, begin.model, begin.state, steps)
@@ -166,7 +166,7 @@ def _simulated(
 
 
 def _whole_segments(count: int) -> int:
-    """Number of evaluations, made whole segments."""
+    """A number of evaluations, rounded up to whole segments."""
     return -(-count // SEGMENT) * SEGMENT
 
 
