@@ -98,7 +98,7 @@ def _time_factors(scale: float) -> Iterator[tuple[float, str]]:
         yield scale**-0.5, f"off by {root}. Were times scaled down before?"
         turned = f"is `scale` turned round (1:{1 / scale:.3g} is `scale: {1 / scale:.3g}`)?"
         yield scale, "longer by `scale`. Times go with its square root: were they scaled before?" if scale > 1 else turned
-        yield 1 / scale, "shorter by `scale` itself: were times scaled down before?"
+        yield 1 / scale, f"{'shorter' if scale > 1 else 'longer'} by `scale` itself: were times scaled down before?"
     for unit, factor in (("milliseconds", 1000.0), ("minutes", 60.0)):
         yield factor, f"`channels.time.unit`: {unit} and seconds mixed up?"
         yield 1 / factor, f"`channels.time.unit`: {unit} and seconds mixed up?"

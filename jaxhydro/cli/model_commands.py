@@ -76,7 +76,7 @@ def simulate(
         if formats:
             raise options.wrong("--format", "it goes with a platform; of a campaign all motions are in simulated.nc")
         return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(cli_options), figures)
-    options.check_platform(platform)
+    options.check_platform(platform, or_campaign=True)
     offset, regular = options.releases(release or []), options.regular(wave_height, wave_period)
     asked = sea_options.asked(cli_options, options.finite(heading, "--heading"))
     if asked is not None and regular is not None:

@@ -151,15 +151,21 @@ def platforms_like(incomplete: str) -> list[str]:
     return [name for name in builtin_platforms() if name.startswith(incomplete)]
 
 
-def check_platform(name: str) -> None:
+def check_platform(name: str, or_campaign: bool = False) -> None:
     """Raise InputError where a platform's argument is neither a built-in name nor a file.
 
     The contents of a file are not checked.
+
+    Args:
+        name: The argument.
+        or_campaign: Whether the command takes a campaign's folder too.
     """
     builtin = builtin_platforms()
     if name.lower() in builtin or is_there(Path(name)) or Path(name).suffix in YAML:
         return
-    expected = f"a platform file, a built-in platform ({', '.join(builtin)}), or a campaign's folder"
+    expected = f"a platform file or a built-in platform ({', '.join(builtin)})"
+    if or_campaign:
+        expected = f"a platform file, a built-in platform ({', '.join(builtin)}), or a campaign's folder"
     raise InputError(name, [Problem("", expected, "no such file or folder", suggest(name, builtin) or suggest_path(name))])
 
 

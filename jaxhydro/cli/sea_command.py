@@ -12,6 +12,7 @@ from jaxhydro.cli.console import complain, say, table
 from jaxhydro.cli.sea_options import transient_of, with_band
 from jaxhydro.cli.simulate_command import Job, finite, print_remarks, print_rest, told_of_bed
 from jaxhydro.cli.simulation_files import Motion, SeaState, write_motion
+from jaxhydro.dynamics.irregular_simulation import CarriedAwayError
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.natural_modes import Modes
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, TRANSIENT, TRANSIENT_SHARE, RequestedSea
@@ -24,6 +25,7 @@ from jaxhydro.remarks import Remark
 from jaxhydro.units import rounded_up
 from jaxhydro.waves.directional_spectrum import WaveSystem
 from jaxhydro.waves.sea_limits import sea_limits, shallow_water
+from jaxhydro.waves.wave_errors import ShortWavesError
 
 MIN_NATURAL_PERIODS = 10  # that statistics of a motion are over
 
@@ -61,11 +63,11 @@ def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     since = clock.perf_counter()
     try:
         position = np.asarray(free_decay(model, job.offset, times, sea=sea, step=step).position)
+    except CarriedAwayError as error:
+        complain(f"{error}; nothing was written")
+        return False
     except ValueError as error:
-        if "is carried" in str(error):
-            complain(f"{error}; nothing was written")
-            return False
-        raise impossible("--cutoff" if "cut the sea off" in str(error) else "--step", error) from None
+        raise impossible("--cutoff" if isinstance(error, ShortWavesError) else "--step", error) from None
     if not finite(times, position):
         return False
     told_of_bed(model, times, position)

@@ -29,6 +29,7 @@ from jaxhydro.units import for_people, unit_of
 from jaxhydro.waves.regular_waves import regular_wave, series_remarks
 from jaxhydro.waves.sea import Stretching, WaveSea, elevation_at_origin
 from jaxhydro.waves.sea_limits import sea_limits
+from jaxhydro.waves.wave_errors import NoWaveError, StretchingError
 
 RAMP_PERIODS = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
@@ -195,11 +196,11 @@ def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, s
         return regular_wave(*wave, model.environment, **how)
     except ImportError as error:
         raise InputError("--order", [Problem("", "1 or 2, or raschii installed", f"{order} ({error})")]) from None
+    except StretchingError:
+        raise InputError("--stretching", [Problem("", "vertical or none from order 3 on", f"{stretching}")]) from None
+    except NoWaveError as error:
+        raise InputError("--wave-height", [Problem("", "a wave that can be", f"none ({error})")]) from None
     except ValueError as error:
-        if "stretching" in str(error):
-            raise InputError("--stretching", [Problem("", "vertical or none from order 3 on", f"{stretching}")]) from None
-        if "is found" in str(error):
-            raise InputError("--wave-height", [Problem("", "a wave that can be", f"none ({error})")]) from None
         expected = "a wave that does not break"
         raise InputError("--wave-height", [Problem("", expected, f"one too steep ({error})")]) from None
 

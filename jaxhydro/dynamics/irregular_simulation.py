@@ -24,6 +24,10 @@ from jaxhydro.waves.support_sea import SupportSea
 MAX_PAIRS = 10_000  # pairs of components of which the second order of a sea of several headings is summed directly
 
 
+class CarriedAwayError(ValueError):
+    """The platform drifts along the waves without end."""
+
+
 def excursion_of(model: Model) -> float:
     """Drift (m) along the waves beyond which a sea is prepared anew: 20 m at the size of VolturnUS-S."""
     return EXCURSION * float(model.size)
@@ -132,7 +136,7 @@ def simulate_irregular(
         The motion, and the sea and steps that were used.
 
     Raises:
-        ValueError: The platform is carried away.
+        CarriedAwayError: The platform drifts without end.
     """
     begin = float(times[0])
     if not sea.long_crested:
@@ -155,7 +159,7 @@ def simulate_irregular(
         if not reached + margin > prepared.half:
             return IrregularSimulation(response, grid, prepared, step, steps)
         if reached > prepared.half + 10 * first_excursion:
-            raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
+            raise CarriedAwayError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
         excursion += reached + margin - prepared.half + 0.5 * first_excursion
 
 

@@ -67,7 +67,8 @@ def simulate(
 
     Raises:
         UnknownName: Another method, adjoint, precision or motion.
-        ValueError: Times do not increase, regular waves lie outside a table of the model, or the platform is carried away.
+        ValueError: Times do not increase, or regular waves lie outside a table of the model.
+        CarriedAwayError: The platform drifts along the waves without end.
         EquilibriumError: The platform has no static equilibrium.
     """
     check(adjoint=(adjoint, get_args(Adjoint)), method=(method, (*get_args(Method), None)))

@@ -12,6 +12,7 @@ from jaxhydro.waves.sea import Stretching, WaveSea
 from jaxhydro.waves.sea_limits import MICHE
 from jaxhydro.waves.second_order import bound_waves
 from jaxhydro.waves.stream_function import SteepWave, StreamFunction, stream_function
+from jaxhydro.waves.wave_errors import BreakingError, StretchingError
 
 MAX_LENGTHENING = 1.2  # length of the steepest wave over that of linear theory, of one period: 1.193 in deep water
 MAX_LAST_HARMONIC = 1e-3  # of the first harmonic of the elevation, that the last one of a whole series has at most
@@ -55,7 +56,10 @@ def regular_wave(
         The sea.
 
     Raises:
-        ValueError: Height, period, order or stretching is out of range, or the wave would break, H / L > 0.142 tanh kh.
+        ValueError: Height, period or order is out of range.
+        BreakingError: The wave would break, H / L > 0.142 tanh kh.
+        StretchingError: A steep wave is asked for with a stretching of linear theory.
+        NoWaveError: No steep wave is found.
         ImportError: From order 3 on, raschii is not installed.
 
     References:
@@ -72,7 +76,7 @@ def regular_wave(
     _check_breaking(height, period, k, depth, 1.0 if order <= 2 else MAX_LENGTHENING)
     if order > 2:
         if stretching not in ("vertical", "none"):
-            raise ValueError(f"a stream-function wave has its own flow above still water: no stretching by {stretching}")
+            raise StretchingError(f"a stream-function wave has its own flow above still water: no stretching by {stretching}")
         solution = stream_function(height, period, depth, float(environment.gravity), order)
         _check_breaking(height, period, solution.wavenumber, depth)
         return _steep(solution, omega, environment, heading, phase, ramp, stretching)
@@ -82,10 +86,10 @@ def regular_wave(
 
 
 def _check_breaking(height: float, period: float, k: float, depth: float, share: float = 1.0) -> None:
-    """Raise ValueError where a wave is higher than a share of Miche's limit."""
+    """Raise BreakingError where a wave is higher than a share of Miche's limit."""
     limit = share * MICHE * 2 * math.pi / k * math.tanh(k * depth)
     if height > limit:
-        raise ValueError(f"a wave of period {period:g} s breaks above a height of {limit:.3g} m, found {height:g} m")
+        raise BreakingError(f"a wave of period {period:g} s breaks above a height of {limit:.3g} m, found {height:g} m")
 
 
 def _steep(

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.waves.sea import WaveSea, stretched
+from jaxhydro.waves.wave_errors import NoWaveError
 
 HINT = "stream-function waves need raschii: pip install 'jaxhydro[waves]'"
 
@@ -44,7 +45,7 @@ def stream_function(height: float, period: float, depth: float, gravity: float, 
         order: Number of Fourier components.
 
     Raises:
-        ValueError: No such wave is found: it breaks, or the series is too short or too long for it.
+        NoWaveError: No such wave is found: it breaks, or the series is too short or too long for it.
         ImportError: raschii is not installed.
     """
     try:
@@ -55,7 +56,7 @@ def stream_function(height: float, period: float, depth: float, gravity: float, 
         with np.errstate(all="ignore"):
             wave = FentonWave(height, depth, period=period, N=order, g=gravity)
     except (RaschiiError, ArithmeticError, np.linalg.LinAlgError, ValueError) as error:
-        raise ValueError(f"no stream-function wave of {height:g} m and {period:g} s is found: {error}") from None
+        raise NoWaveError(f"no stream-function wave of {height:g} m and {period:g} s is found: {error}") from None
     elevation = 2 * np.asarray(wave.E)[1:] / order
     elevation[-1] /= 2  # the last of a cosine series by the trapezoidal rule
     return StreamFunction(float(wave.k), elevation, np.asarray(wave.data["B"])[1:])

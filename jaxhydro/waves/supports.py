@@ -15,6 +15,8 @@ import numpy as np
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
+from jaxhydro.waves.wave_errors import ShortWavesError
+
 SPACING_POWER = 0.75  # supports are Chebyshev points in k^POWER: denser where profiles change most
 TOLERANCE = 1e-5  # of a free wave's largest value, that its field may be missed by in the box
 BOUND_TOLERANCE_FACTOR = 30.0  # times as much for bound waves shorter than all free ones
@@ -94,7 +96,7 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
     highest = max(free, bound)
     count = math.ceil((0.5 * highest * box.half + 8) / 4) * 4
     if count > MAX_SUPPORTS:  # before arrays that would fill the memory
-        raise ValueError(_too_short(highest, box))
+        raise ShortWavesError(_too_short(highest, box))
     spacing = 0.05 / (box.half * math.sqrt(highest))
     grid = (spacing * np.arange(math.ceil(math.sqrt(highest) / spacing) + 3)) ** 2
     points = max(24, math.ceil(1.5 * highest * box.half / math.pi) + 12)
@@ -113,7 +115,7 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
         if (error <= allowed)[inside].all():
             return Supports(k, table.T.copy(), spacing, float(error[inside & (grid <= free)].max()))
         count += 4
-    raise ValueError(_too_short(highest, box))
+    raise ShortWavesError(_too_short(highest, box))
 
 
 def _too_short(highest: float, box: Box) -> str:

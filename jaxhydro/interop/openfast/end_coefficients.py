@@ -51,17 +51,14 @@ def end_area(member: HydroDynMember, end: int) -> float:
     return float(np.prod(member.sizes[end])) * (math.pi / 4 if member.shape == "circ" else 1.0)
 
 
-def wet_end_coefficients(
-    members: Iterable[HydroDynMember], notes: MemberNotes, joints: MemberNotes
-) -> dict[tuple[int, int], EndCoefficients]:
+def wet_end_coefficients(members: Iterable[HydroDynMember], joints: MemberNotes) -> dict[tuple[int, int], EndCoefficients]:
     """Axial coefficients of the ends that count.
 
     These are ends of steep members, under still water, that are not covered by another member.
 
     Args:
         members: All members.
-        notes: Where to say what became of members.
-        joints: The same of joints.
+        joints: Where to say what became of joints.
 
     Returns:
         Coefficients by MemberID and end, 0 below and 1 above.

@@ -64,7 +64,7 @@ def convert_members(members: Sequence[HydroDynMember], tables: CoefficientTables
     """
     source = tables.file.name
     notes, joints, hull = MemberNotes(source), MemberNotes(source), ConvertedHull()
-    ends = wet_end_coefficients(members, notes, joints)
+    ends = wet_end_coefficients(members, joints)
     coefficients = {member.number: tables.of(member) for member in members}
     hull.diffracting = any(entry.diffracting for entry in coefficients.values())
     for member in members:
