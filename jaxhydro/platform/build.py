@@ -47,6 +47,7 @@ from jaxhydro.platform.computed_loads import tables_of
 from jaxhydro.platform.damper_build import damper_loads, damper_mass, damper_remarks
 from jaxhydro.platform.diffraction_correction_build import with_diffraction_correction
 from jaxhydro.platform.drag_laws import DragLaw, plain_drag, with_drag_laws
+from jaxhydro.platform.mooring_schema import LinearSprings, StiffnessMatrix
 from jaxhydro.platform.tension_table_build import tension_table_lines
 from jaxhydro.platform.tension_table_schema import TensionTableMooring
 from jaxhydro.quick_jit import on_device, quick_jit
@@ -270,19 +271,19 @@ def _of_mooring(platform: schema.Platform) -> tuple[Remark, ...]:
         return as_warnings(catenary_remarks(platform.mooring, platform.water, platform.name))
     if isinstance(platform.mooring, TensionTableMooring):
         return as_warnings(platform.mooring.remarks())
-    slack = platform.mooring.slackness() if isinstance(platform.mooring, schema.LinearSprings) else ""
+    slack = platform.mooring.slackness() if isinstance(platform.mooring, LinearSprings) else ""
     return as_warnings([slack] if slack else [])
 
 
 def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
     mooring = platform.mooring
-    if isinstance(mooring, schema.StiffnessMatrix):
+    if isinstance(mooring, StiffnessMatrix):
         return [Stiffness(_entries("C", mooring.matrix()), jnp.asarray(mooring.preload), "mooring")]
     if isinstance(mooring, Catenary):
         return [catenary_lines(mooring, platform.water)]
     if isinstance(mooring, TensionTableMooring):
         return [tension_table_lines(mooring)]
-    if not isinstance(mooring, schema.LinearSprings):
+    if not isinstance(mooring, LinearSprings):
         return []
     springs = {f"line{i + 1}": line.spring() for i, line in enumerate(mooring.lines)}
     stiffness, unstretched = ({name: spring[k] for name, spring in springs.items()} for k in (0, 1))

@@ -20,7 +20,8 @@ from jaxhydro.loads import Buoyancy, EndInertia, QuadraticDamping
 from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.platform.build import build, members_of
 from jaxhydro.platform.catenary_schema import Catenary
-from jaxhydro.platform.schema import Platform, StiffnessMatrix, load_platform
+from jaxhydro.platform.mooring_schema import StiffnessMatrix
+from jaxhydro.platform.schema import Platform, load_platform
 from jaxhydro.rotations import rotation
 
 BUILT_IN = ("volturnus-s", "oc3-hywind", "oc4-deepcwind", "iti-barge")

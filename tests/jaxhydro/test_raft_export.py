@@ -17,7 +17,8 @@ from jaxhydro.interop.raft_export_design import DESIGN, export_design
 from jaxhydro.loads import Buoyancy
 from jaxhydro.platform.build import build, members_of
 from jaxhydro.platform.catenary_schema import Catenary
-from jaxhydro.platform.schema import Hydrostatics, Platform, load_platform
+from jaxhydro.platform.computed_tables_schema import Hydrostatics
+from jaxhydro.platform.schema import Platform, load_platform
 
 SAME = 1e-9
 CHAIN = {"axial_stiffness": 3.27e9, "mass_per_length": 685.0, "diameter": 0.333}
