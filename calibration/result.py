@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
-from calibration.campaign.manifest import Use
+from calibration.campaign.manifest_sections import Use
 from jaxhydro.dynamics.model import Model
 
 if TYPE_CHECKING:

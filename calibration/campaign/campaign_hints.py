@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from calibration.campaign.manifest import quantity
+from calibration.campaign.manifest_sections import quantity
 from calibration.campaign.records import Record
 from calibration.campaign.signals import dominant_period
 from jaxhydro.dynamics.natural_modes import Modes

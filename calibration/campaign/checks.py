@@ -17,7 +17,8 @@ import numpy as np
 
 from calibration.campaign.digits import local_resolution, straight_piece
 from calibration.campaign.extent_checks import extent_warnings
-from calibration.campaign.manifest import DOFS, IN_WAVES, WAVE, Manifest
+from calibration.campaign.manifest import Manifest
+from calibration.campaign.manifest_sections import DOFS, IN_WAVES, WAVE
 from calibration.campaign.records import Series, frozen_channels, read_series, unit_factors, valid_values
 from calibration.campaign.signals import (
     constant_stretches,

@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from calibration.campaign.manifest import IN_WAVES, WAVE, Channel, Manifest, Test, Use, quantity
+from calibration.campaign.manifest import Manifest
+from calibration.campaign.manifest_sections import IN_WAVES, WAVE, Channel, Test, Use, quantity
 from calibration.campaign.release import FreeMotion, free_motion
 from calibration.campaign.signals import missing_code, noise_level, resolution
 from calibration.campaign.tracked_point import move_to_reference, noise_moved_to_reference

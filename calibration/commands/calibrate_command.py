@@ -9,7 +9,7 @@ from typing import Any
 
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign, load_campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.wave_band import band_sentence
 from calibration.fitting.decay_fit import calibrate
 from calibration.fitting.joint_fit import calibrate_jointly

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from calibration.discovery.frequency_bands import Bands, FourierRows, band_powers, cut_into_bands, step_of

@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.wave_band import band_sentence
 from calibration.decay_analysis.period_change import unexplained_period_change

@@ -7,7 +7,7 @@ from typing import get_args
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.fitting.decay_fit import held_out, labels_of, prepare_fit, run_fit, space_of
 from calibration.fitting.decay_part import DecayPart
 from calibration.fitting.fit import Fit

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import get_args
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.fitting.block_part import BlockPart
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.fitting.fit import Fit

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage, stats
 
-from calibration.campaign.manifest import Kind, quantity
+from calibration.campaign.manifest_sections import Kind, quantity
 from calibration.campaign.records import valid_values
 from calibration.campaign.release import free_motion
 from calibration.campaign.signals import noise_level

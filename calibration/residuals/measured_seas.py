@@ -15,7 +15,7 @@ import numpy as np
 
 from calibration.campaign.campaign_hints import motion_hints
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import WAVE
+from calibration.campaign.manifest_sections import WAVE
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run, runs
 from calibration.campaign.second_order_hint import second_order_hint

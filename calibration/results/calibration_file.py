@@ -7,7 +7,7 @@ from typing import Annotated, Literal, TypeVar
 
 from pydantic import ConfigDict, Field, model_validator
 
-from calibration.campaign.manifest import Use
+from calibration.campaign.manifest_sections import Use
 from calibration.notes import NoteKind
 from calibration.residuals.wave_options import Options
 from calibration.results.result_folder import DIAGNOSIS_FILE, RESULT_FILE, Figure

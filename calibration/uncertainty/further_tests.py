@@ -7,7 +7,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.campaign.manifest import Test
+from calibration.campaign.manifest_sections import Test
 from calibration.campaign.records import Record
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.fitting.fit import Fit

@@ -11,7 +11,7 @@ import pytest
 from ruamel.yaml import YAML
 
 import jaxhydro as jh
-from calibration.campaign.manifest import Test
+from calibration.campaign.manifest_sections import Test
 from calibration.campaign.records import Record
 from calibration.fitting.decay_fit import fit_of_decays, run_fit, set_up_decays
 from calibration.fitting.decay_part import series_of

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from calibration import load_campaign
-from calibration.campaign.manifest import Recording
+from calibration.campaign.manifest_sections import Recording
 from calibration.campaign.runs import Run
 from calibration.campaign.second_order_hint import second_order_hint
 from calibration.residuals.measured_seas import sea_of, seas_of
