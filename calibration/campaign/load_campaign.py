@@ -9,7 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calibration.campaign.checks import Finding, check_records
+from calibration.campaign.checks import check_records
+from calibration.campaign.finding import Finding
 from calibration.campaign.manifest import Manifest, platform_source, read_manifest
 from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.plausible import CampaignFinding, check_plausible

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from calibration.campaign.checks import Finding
+from calibration.campaign.finding import Finding
 from calibration.campaign.manifest_sections import IN_WAVES, WAVE
 from calibration.campaign.records import Record
 from jaxhydro.analysis.spectral import power_spectrum

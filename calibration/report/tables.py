@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from calibration.campaign.checks import Finding
+from calibration.campaign.finding import Finding
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest_sections import IN_WAVES
