@@ -33,8 +33,8 @@ from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.hull.hull import Hull
-from jaxhydro.waves.irregular import separated_record
 from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.recorded_waves import separated_record
 from jaxhydro.waves.sea_limits import sea_limits
 
 MAX_MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it

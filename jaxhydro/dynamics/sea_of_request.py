@@ -18,8 +18,9 @@ from jaxhydro.waves.components import Components
 from jaxhydro.waves.directional_spectrum import (
     directional_components,
 )
-from jaxhydro.waves.irregular import separated_record, spectrum_components
+from jaxhydro.waves.irregular import spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.recorded_waves import separated_record
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz, white_noise
 from jaxhydro.waves.spreading import circular_moments
 
