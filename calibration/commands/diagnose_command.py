@@ -5,7 +5,7 @@ from pathlib import Path
 
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.manifest_sections import IN_WAVES
-from calibration.commands.calibrate_command import load
+from calibration.commands.loaded_campaign import load
 from calibration.discovery.checkpoint import CHECKPOINT_FILE
 from calibration.discovery.diagnosis import Diagnosis, Outcome
 from calibration.report import diagnosis_tables as tables

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.commands.calibrate_command import load
+from calibration.commands.loaded_campaign import load
 from calibration.fitting.decay_fit import run_fit
 from calibration.fitting.progress import Progress
 from calibration.formatting import number

@@ -16,7 +16,7 @@ from test_diagnosis_in_waves import PLATFORM, excited, write_table
 
 import jaxhydro as jh
 from calibration import load_campaign
-from calibration.commands.calibrate_command import simulate_campaign
+from calibration.commands.simulate_campaign_command import simulate_campaign
 from calibration.discovery.diagnosis_fits import test_fits_at as fitted_tests
 from calibration.discovery.effects.candidates import with_effects
 from calibration.discovery.linearisations import Point
