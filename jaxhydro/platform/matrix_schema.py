@@ -59,3 +59,8 @@ LinearDamping = Damping[Annotated[str, _key("B")]]  # N s/m, N s, N m s/rad
 QuadraticDamping = Damping[Annotated[str, _key("B", diagonal=True)]]  # N s2/m2, N m s2/rad2
 AddedMass = Entries[Annotated[str, _key("A")]]  # kg, kg m, kg m2
 Stiffness = Entries[Annotated[str, _key("C")]]  # N/m, N/rad, N m/rad
+
+
+def entries_of(letter: str, matrix: Matrix6) -> dict[str, float]:
+    """Entries of a matrix (6, 6) that are not 0, by name, such as B15 with the letter B."""
+    return {f"{letter}{i + 1}{j + 1}": float(matrix[i, j]) for i in range(6) for j in range(6) if matrix[i, j] != 0.0}

@@ -18,8 +18,9 @@ from jaxhydro.interop.openfast.export_deck import export_deck
 from jaxhydro.interop.openfast_deck import read_openfast_deck
 from jaxhydro.loads import Buoyancy, EndInertia, QuadraticDamping
 from jaxhydro.loads.static_force import StaticForce
-from jaxhydro.platform.build import build, members_of
+from jaxhydro.platform.build import build
 from jaxhydro.platform.catenary_schema import Catenary
+from jaxhydro.platform.members_build import members_of
 from jaxhydro.platform.mooring_schema import StiffnessMatrix
 from jaxhydro.platform.schema import Platform, load_platform
 from jaxhydro.rotations import rotation

@@ -15,9 +15,10 @@ from jaxhydro.interop.export_source import ExportedModel
 from jaxhydro.interop.raft_design import read_raft_design
 from jaxhydro.interop.raft_export_design import DESIGN, export_design
 from jaxhydro.loads import Buoyancy
-from jaxhydro.platform.build import build, members_of
+from jaxhydro.platform.build import build
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.computed_tables_schema import Hydrostatics
+from jaxhydro.platform.members_build import members_of
 from jaxhydro.platform.schema import Platform, load_platform
 
 SAME = 1e-9
