@@ -22,7 +22,8 @@ from calibration.results.uncertainty_file import (
     summary_of,
 )
 from calibration.results.write_uncertainty import Uncertainty, write_uncertainty
-from calibration.uncertainty.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats, repeats
+from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats, repeats
+from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.likelihood import Likelihood, likelihood_of, restored_fit
 from calibration.uncertainty.nuts import Samples, sample
 from calibration.uncertainty.profile import Profile, profile
