@@ -9,7 +9,7 @@ import numpy as np
 from calibration.campaign.finding import Finding, Severity
 from calibration.campaign.manifest import Manifest
 from calibration.campaign.manifest_sections import IN_WAVES, WAVE
-from calibration.campaign.records import Series
+from calibration.campaign.series import Series
 from calibration.campaign.signals import dominant_period
 
 MIN_SAMPLES = 20  # in a window

@@ -17,7 +17,8 @@ from calibration.campaign.extent_checks import extent_warnings
 from calibration.campaign.finding import Finding
 from calibration.campaign.manifest import Manifest
 from calibration.campaign.manifest_sections import DOFS, WAVE
-from calibration.campaign.records import Series, read_series, unit_factors, valid_values
+from calibration.campaign.records import unit_factors
+from calibration.campaign.series import Series, read_series, valid_values
 from calibration.campaign.signal_checks import signal_findings
 from calibration.campaign.signals import missing_code, resolution, wave_height
 

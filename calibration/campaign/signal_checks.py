@@ -11,7 +11,7 @@ from calibration.campaign.checked_series import MAX_SHOWN, MIN_SAMPLES, CheckedS
 from calibration.campaign.digits import local_resolution, straight_piece
 from calibration.campaign.finding import Finding
 from calibration.campaign.manifest_sections import WAVE
-from calibration.campaign.records import frozen_channels
+from calibration.campaign.series import frozen_channels
 from calibration.campaign.signals import constant_stretches, flank_heights, resolution, spikes, straight_line
 
 
