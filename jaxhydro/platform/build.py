@@ -15,7 +15,8 @@ from jaxhydro.environment import Environment
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.hull.ends import Ends
 from jaxhydro.hull.hull import Hull
-from jaxhydro.hull.strips import COLUMN_SLOPE, Elements
+from jaxhydro.hull.member import COLUMN_SLOPE
+from jaxhydro.hull.strips import Elements
 from jaxhydro.jax_settings import need_float64
 from jaxhydro.loads import (
     AbstractLoad,

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 from jaxhydro.platform.schema import Platform
 
 

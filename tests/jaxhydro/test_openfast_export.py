@@ -11,7 +11,7 @@ from openfast_io.FAST_reader import InputReader_OpenFAST
 
 from jaxhydro.cli.export_command import source_of
 from jaxhydro.dynamics.model import Model
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 from jaxhydro.interop.conversion import Conversion, Treatment
 from jaxhydro.interop.export_source import ExportedModel
 from jaxhydro.interop.openfast.export_deck import export_deck

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from jaxhydro.cli.export_command import source_of
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 from jaxhydro.interop.conversion import Treatment
 from jaxhydro.interop.export_source import ExportedModel
 from jaxhydro.interop.raft_design import read_raft_design
