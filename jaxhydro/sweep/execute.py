@@ -25,19 +25,8 @@ from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.local import simulate_locally
 from jaxhydro.sweep.resources import Workload, chosen, supports_of
 from jaxhydro.sweep.sea_states import named
-from jaxhydro.sweep.store import (
-    DONE,
-    FAILED,
-    RESULTS,
-    TO_DO,
-    Inputs,
-    Store,
-    check_same,
-    create,
-    discard,
-    locked_folder,
-    open_results,
-)
+from jaxhydro.sweep.store import RESULTS, Store, check_same, create, discard, locked_folder, open_results
+from jaxhydro.sweep.store_layout import DONE, FAILED, TO_DO, Inputs
 from jaxhydro.sweep.sweep_file import load_sweep
 from jaxhydro.sweep.sweep_remarks import impossible, near_limits, notes, outside, shares_in_band
 from jaxhydro.sweep.sweep_schema import Sweep

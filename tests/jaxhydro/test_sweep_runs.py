@@ -29,7 +29,8 @@ from jaxhydro.sweep.batch import run_outcome, run_outcomes, setup_in
 from jaxhydro.sweep.cases import Plan
 from jaxhydro.sweep.execute import opened, prepared
 from jaxhydro.sweep.local import Worker
-from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store, locked_folder
+from jaxhydro.sweep.store import INPUTS, RESULTS, Store, locked_folder
+from jaxhydro.sweep.store_layout import DONE, FAILED
 from jaxhydro.sweep.sweep_remarks import shares_in_band
 from jaxhydro.waves.sea_state import state_of
 
