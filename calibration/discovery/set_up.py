@@ -21,8 +21,8 @@ from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
-from calibration.residuals.measured_seas import sea_step, with_diffraction
 from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.run_seas import sea_step, with_diffraction
 from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import equilibrium, linearised

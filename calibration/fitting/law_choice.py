@@ -12,7 +12,7 @@ from calibration.fitting.law_parameters import LAWS, Law
 from calibration.fitting.progress import Progress
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.identifiability.directions import Identifiability
-from calibration.residuals.measured_seas import Seas, seas_of
+from calibration.residuals.run_seas import Seas, seas_of
 from calibration.residuals.run_segments import sea_state
 from calibration.residuals.wave_options import Options, options_of
 from calibration.result import Calibration, error_of_energies

@@ -26,8 +26,9 @@ from calibration.fitting.sea_remarks import sea_remarks
 from calibration.notes import NoteKind, notes_of
 from calibration.parameters.families import parameter_family
 from calibration.residuals.abstract_residual import parameters_only
-from calibration.residuals.measured_seas import Seas, SeaTest, compare, sea_step, seas_of, with_diffraction
+from calibration.residuals.measured_seas import SeaTest, compare
 from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.run_seas import Seas, sea_step, seas_of, with_diffraction
 from calibration.residuals.sea_errors import in_bands
 from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
 from calibration.residuals.wave_options import Options, options_of

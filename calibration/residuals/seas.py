@@ -18,8 +18,9 @@ from calibration.campaign.runs import Run
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import AbstractGroupedResidual
 from calibration.residuals.band_energies import BandEnergies, energies_of, joined_bands
-from calibration.residuals.measured_seas import Seas, peak_period
+from calibration.residuals.measured_seas import peak_period
 from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.run_seas import Seas
 from calibration.residuals.run_segments import run_segments, samples_after_transient, simulate_segments
 from calibration.residuals.wave_options import Options
 from jaxhydro.analysis.sea_statistics import bands_of

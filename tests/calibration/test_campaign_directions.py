@@ -14,7 +14,8 @@ from calibration.campaign.load_campaign import load_campaign
 from calibration.campaign.stated_sea import Sea
 from calibration.campaign.wave_directions import stated_directions
 from calibration.fitting.sea_fit import calibrate_in_waves
-from calibration.residuals.measured_seas import compare, seas_of
+from calibration.residuals.measured_seas import compare
+from calibration.residuals.run_seas import seas_of
 from calibration.residuals.wave_options import Options
 from jaxhydro.errors import InputError, validate
 from jaxhydro.waves.recorded_waves import record_components

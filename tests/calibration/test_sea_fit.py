@@ -14,7 +14,8 @@ from calibration import Interrupted, calibrate, calibrate_in_waves, load_campaig
 from calibration.parameters.space import parameter_space
 from calibration.residuals.abstract_residual import parameters_only
 from calibration.residuals.band_energies import CELLS_PER_BAND, MIN_ENERGY_SHARE, energies_of, joined_bands
-from calibration.residuals.measured_seas import compare, seas_of, with_diffraction
+from calibration.residuals.measured_seas import compare
+from calibration.residuals.run_seas import seas_of, with_diffraction
 from calibration.residuals.sea_errors import in_bands
 from calibration.residuals.seas import set_up_waves
 from calibration.residuals.wave_options import Options

@@ -23,7 +23,8 @@ from calibration.discovery.linearisations import Point
 from calibration.discovery.set_up import set_up_study
 from calibration.parameters.space import parameter_space
 from calibration.residuals.abstract_residual import Unknowns
-from calibration.residuals.measured_seas import compare, seas_of, with_diffraction
+from calibration.residuals.measured_seas import compare
+from calibration.residuals.run_seas import seas_of, with_diffraction
 from calibration.residuals.seas import residuals_and_reach, set_up_waves
 from calibration.residuals.shooting import set_up_blocks, simulate_blocks
 from calibration.residuals.static import set_up_offsets
