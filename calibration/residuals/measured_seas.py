@@ -12,8 +12,8 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.campaign.campaign_hints import motion_hints
 from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.motion_hints import motion_hints
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from calibration.residuals.moving_channels import moving_channels
