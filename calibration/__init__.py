@@ -18,7 +18,7 @@ from calibration.fitting.progress import Interrupted, Progress
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.global_search.run_search import Found, SearchInterrupted, search
 from calibration.global_search.task import Budget
-from calibration.identifiability.directions import Identifiability
+from calibration.identifiability.findings import Identifiability
 from calibration.result import Calibration, Estimate, Series, TestFit
 from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats
 from calibration.uncertainty.bootstrap_draws import Bootstrap

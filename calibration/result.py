@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from calibration.identifiability.directions import Identifiability
+    from calibration.identifiability.findings import Identifiability
 
 
 @dataclass(frozen=True, eq=False)

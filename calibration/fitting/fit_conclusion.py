@@ -16,7 +16,7 @@ from calibration.decay_analysis.period_change import unexplained_period_change
 from calibration.fitting.fit import Fit
 from calibration.fitting.unit_hints import unit_hints
 from calibration.formatting import listed, percent_span
-from calibration.identifiability.directions import Identifiability
+from calibration.identifiability.findings import Identifiability
 from calibration.identifiability.information import IDENTIFIABLE_DEVIATION
 from calibration.identifiability.standard_deviations import Spread
 from calibration.notes import Note, NoteKind, notes_of
