@@ -18,9 +18,10 @@ from calibration.fitting.progress import Interrupted, Progress
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.global_search.run_search import Found, SearchInterrupted, search
 from calibration.global_search.task import Budget
-from calibration.identifiability.directions import Identifiability
+from calibration.identifiability.findings import Identifiability
 from calibration.result import Calibration, Estimate, Series, TestFit
-from calibration.uncertainty.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats
+from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats
+from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.further_tests import decay_information, effective_noise, expected_information, rank_tests
 from calibration.uncertainty.likelihood import Likelihood, likelihood
 from calibration.uncertainty.nuts import Samples, sample

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
-from calibration.campaign.manifest import Use
+from calibration.campaign.manifest_sections import Use
 from jaxhydro.dynamics.model import Model
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-    from calibration.identifiability.directions import Identifiability
+    from calibration.identifiability.findings import Identifiability
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,6 +61,6 @@ def calibration_file(path: str) -> Path:
     Args:
         path: Folder or file.
     """
-    from calibration.results.calibration_file import file_of
+    from calibration.results.read_result import file_of
 
     return file_of(path)

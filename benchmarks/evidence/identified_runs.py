@@ -38,7 +38,7 @@ def of_case(sea: str, name: str) -> dict[str, Any]:
         name: A case of `CASES`.
     """
     from calibration import calibrate_jointly, load_campaign
-    from calibration.campaign.manifest import Recording
+    from calibration.campaign.manifest_sections import Recording
 
     campaign, (kinds, objective) = load_campaign(FOLDER), CASES[name]
     linear = campaign.manifest.model_copy(update={"records": Recording(order=1)})  # as the README of the campaigns says

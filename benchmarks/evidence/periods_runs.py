@@ -50,7 +50,7 @@ def worked_out() -> dict[str, Any]:
     from jaxhydro import equilibrium, load_model, natural_modes
     from jaxhydro.dynamics.statics import linearised
     from jaxhydro.loads.hydrostatics import buoyancy
-    from jaxhydro.platform.build import members_of
+    from jaxhydro.platform.members_build import members_of
     from jaxhydro.platform.schema import load_platform
 
     model = load_model("volturnus-s")

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from calibration.campaign.manifest import IN_WAVES, WAVE
-from calibration.campaign.records import Series
+from calibration.campaign.manifest_sections import IN_WAVES, WAVE
+from calibration.campaign.series import Series
 from calibration.campaign.wave_bounds import AVERAGING_CYCLES, begun_before, wave_span, waves_left, waves_of_others
 
 _WINDOW_HINT = "a `window` that begins later overrides this"

@@ -9,10 +9,13 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calibration.campaign.checks import Finding, check_records
-from calibration.campaign.manifest import IN_WAVES, Manifest, platform_source, read_manifest
+from calibration.campaign.checks import check_records
+from calibration.campaign.finding import Finding
+from calibration.campaign.manifest import Manifest, platform_source, read_manifest
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.plausible import CampaignFinding, check_plausible
-from calibration.campaign.records import Record, read_series, records_of
+from calibration.campaign.records import Record, records_of
+from calibration.campaign.series import read_series
 from calibration.campaign.table_findings import check_tables, platform_findings
 from calibration.campaign.wave_band import wave_band
 from calibration.formatting import listed

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from calibration.campaign.campaign_hints import Hint, campaign_hints
-from calibration.campaign.checks import Finding, Severity
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.finding import Finding, Severity
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.signals import dominant_period, wave_height
 from jaxhydro.analysis.sea_statistics import record_peak_period

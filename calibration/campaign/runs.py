@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES, WAVE, platform_source
-from calibration.campaign.records import Record, unit_factors, valid_values, whole_series
+from calibration.campaign.manifest import platform_source
+from calibration.campaign.manifest_sections import IN_WAVES, WAVE
+from calibration.campaign.records import Record, unit_factors, whole_series
+from calibration.campaign.series import valid_values
 from calibration.campaign.wave_directions import StatedDirections, stated_directions
 from jaxhydro.errors import InputError, Problem
 

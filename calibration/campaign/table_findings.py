@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from calibration.campaign.checks import Finding
-from calibration.campaign.manifest import IN_WAVES, WAVE
+from calibration.campaign.finding import Finding
+from calibration.campaign.manifest_sections import IN_WAVES, WAVE
 from calibration.campaign.records import Record
 from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.dynamics.model import Model

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from calibration.campaign.manifest import IN_WAVES, Manifest
+from calibration.campaign.manifest import Manifest
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
 from jaxhydro.dynamics.model import Model
 from jaxhydro.waves import wave_bands

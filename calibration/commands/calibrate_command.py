@@ -1,16 +1,15 @@
-"""Commands `calibrate`, and `simulate` in the measured waves of a campaign."""
+"""Command `calibrate`: from a campaign to result files and tables."""
 
 import shlex
-import time as clock
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from calibration.campaign.grouped_findings import group_findings
-from calibration.campaign.load_campaign import Campaign, load_campaign
-from calibration.campaign.manifest import IN_WAVES
-from calibration.campaign.wave_band import band_sentence
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.manifest_sections import IN_WAVES
+from calibration.commands.loaded_campaign import load, print_calibrated_values
 from calibration.fitting.decay_fit import calibrate
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.law_choice import SeaLaws, choose_law
@@ -20,22 +19,20 @@ from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.fitting.weighted_residuals import Loss
 from calibration.global_search.run_search import SearchInterrupted, search
 from calibration.global_search.task import Budget
-from calibration.report import sea_tables, tables
+from calibration.report import tables
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
 from calibration.report.summary import calibration_sentence, summary_of
 from calibration.report.write_report import write_report
-from calibration.residuals.measured_seas import Diverged, compare
+from calibration.residuals.measured_seas import Diverged
 from calibration.residuals.seas import Objective
-from calibration.residuals.wave_options import Options, non_default_options, options_of
+from calibration.residuals.wave_options import non_default_options, options_of
 from calibration.result import Calibration
-from calibration.results.applied_calibration import AppliedCalibration, apply_calibration
+from calibration.results.applied_calibration import apply_calibration
 from calibration.results.calibration_file import CalibrationFile, read_saved
-from calibration.results.result_folder import MOTION_FILE, RESULT_FILE
+from calibration.results.result_folder import RESULT_FILE
 from calibration.results.write_calibration import NotFinite, write_calibration
-from calibration.results.write_comparison import document, write_comparison
 from calibration.results.write_laws import write_laws
 from jaxhydro.cli.console import complain, progress, say, table
-from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.platform.drag_laws import law_labels
 
@@ -46,30 +43,6 @@ SEARCH_ENDINGS = {
     "budget": "cut off by --search-seconds",
     "interrupted": "stopped by the user",
 }
-
-
-def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.count_tests) -> Campaign:
-    """Load a campaign and print its tests and warnings.
-
-    Args:
-        path: Folder or manifest of the campaign.
-        out: Folder of the results.
-        counted: Makes the text on its tests that is printed.
-
-    Raises:
-        InputError: The campaign cannot be read, or results would replace its own data.
-    """
-    campaign = load_campaign(path)
-    for test in campaign.manifest.tests:
-        if (campaign.folder / test.file).resolve() == (out / MOTION_FILE).resolve():
-            actual = f"{str(out)!r}, where {MOTION_FILE} is the data of test {test.id}"
-            raise InputError("--out", [Problem("", "another folder", actual)])
-    say(f"{campaign.manifest.name}: {counted(campaign)}")
-    if (band := band_sentence(campaign.manifest, campaign.model, campaign.records)) is not None:
-        say(f"{band[0].upper()}{band[1:]}")
-    if campaign.findings:
-        table("Warnings", *tables.findings(campaign.findings), left=4, stderr=True)
-    return campaign
 
 
 def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campaign, str]:
@@ -158,7 +131,7 @@ def run(
         # what a law adds is begun from in waves only; effects found are not declared
         labels = [k for k in used.values if k in model.values or (tests == "waves" and k in law_labels(model))]
         begin = {"start": {k: used.values[k] for k in labels}}
-        _calibrated_values(used._replace(values=begin["start"]), start, campaign)
+        print_calibrated_values(used._replace(values=begin["start"]), start, campaign)
         if used.strips is not None:
             complain(f"warning: values are begun from, strips stay as the platform file has them: {start} has {used.strips}")
         if (
@@ -257,83 +230,3 @@ def _run_search(campaign: Campaign, seed: int, seconds: float) -> tuple[dict[str
     words = f"{result.method}, seed {seed}, J {result.objective:.4g}, {spent}; {SEARCH_ENDINGS[result.ended]}"
     say(f"Search: {words}")
     return result.values, words
-
-
-def simulate_campaign(
-    campaign: Path,
-    out: Path,
-    *,
-    calibration: Path | None,
-    asked: Mapping[str, Any] | None = None,
-    figures: bool = True,
-) -> bool:
-    """Simulate a campaign's tests in their measured waves, compare, write and print.
-
-    Args:
-        campaign: Folder or manifest of the campaign.
-        out: Folder of the results.
-        calibration: Calibration whose values are used; None: those of the platform file.
-        asked: Fields of `Options`. Other fields are those of a diagnosis of this campaign, where the calibration is one. If the
-            order is asked for, how waves are bound and act is the default.
-        figures: Whether figures are written.
-
-    Returns:
-        False where a motion grows without bound.
-
-    Raises:
-        InputError: The campaign or the calibration cannot be used.
-        EquilibriumError: The platform does not float at rest.
-    """
-    begun = clock.monotonic()
-    loaded = load(campaign, out, sea_tables.counted)
-    model, used = loaded.model, None
-    if calibration is not None:
-        used = apply_calibration(calibration, model, loaded.platform.name)
-        model = used.model
-        _calibrated_values(used, calibration, loaded)
-        if used.strips is not None:
-            say(f"Strips as they were when these were found: {used.strips}")
-    asked = asked or {}
-    seas = used.seas if used is not None and used.campaign == loaded.manifest.name else None
-    if seas is not None and "order" in asked:  # with all of theory's second order, then
-        seas = replace(seas, **{name: getattr(Options(), name) for name in ("kinds", "highest_difference", "acting")})
-    options = replace(seas or options_of(loaded), **asked)
-    if not options.cutoff > options.low:
-        expected = f"a number above {options.low:g} Hz, where first-order waves begin"
-        raise InputError("--cutoff", [Problem("", expected, f"{options.cutoff:g}")])
-    if seas is not None and (changes := non_default_options(options, asked)):
-        say(f"Seas as they were when these were found: {changes}")
-    stable_modes(model)
-    try:
-        comparison = compare(loaded, model, options, lambda line: say(line, stderr=True))
-    except Diverged as error:
-        complain(f"{error}; nothing was written")
-        return False
-    content = document(
-        comparison,
-        options,
-        campaign=loaded.manifest.name,
-        platform=loaded.platform.name,
-        calibration=None if calibration is None else str(calibration),
-        applied=used,
-    )
-    written = write_comparison(comparison, content, out, figures)
-    for note in written.warnings:
-        complain(f"warning: {note}")
-    table("Waves", *sea_tables.seas_table(written), left=3)
-    table("Motions", *sea_tables.motions_table(written), left=2)
-    say(f"Spectra: {written.options.spectra}")
-    table("Energy in bands", *sea_tables.bands_table(written), left=3)
-    say(f"Results are in {out}, after {clock.monotonic() - begun:.0f} s")
-    return True
-
-
-def _calibrated_values(used: AppliedCalibration, source: Path, campaign: Campaign) -> None:
-    """Print which calibrated values are used, and warn where they say little."""
-    if used.campaign != campaign.manifest.name:
-        complain(f"warning: {source} is a calibration of {used.campaign!r}, used for {campaign.manifest.name!r}")
-    say(f"Calibrated values used: {', '.join(used.values)}")
-    if used.not_used:
-        say(f"Not used, the campaign has its own: {', '.join(used.not_used)}")
-    if used.undetermined:
-        complain(f"warning: the records of that calibration did not determine {', '.join(used.undetermined)}: they say little")

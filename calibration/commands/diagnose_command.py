@@ -4,8 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from calibration.campaign.grouped_findings import group_findings
-from calibration.campaign.manifest import IN_WAVES
-from calibration.commands.calibrate_command import load
+from calibration.campaign.manifest_sections import IN_WAVES
+from calibration.commands.loaded_campaign import load
 from calibration.discovery.checkpoint import CHECKPOINT_FILE
 from calibration.discovery.diagnosis import Diagnosis, Outcome
 from calibration.report import diagnosis_tables as tables

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from calibration.campaign.manifest import WAVE
+from calibration.campaign.manifest_sections import WAVE
 from calibration.formatting import counted
 from calibration.new_campaign.campaign_draft import CampaignDraft, TestDraft, example_draft
 from calibration.new_campaign.column_guesses import ColumnGuess

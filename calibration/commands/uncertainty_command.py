@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.commands.calibrate_command import load
+from calibration.commands.loaded_campaign import load
 from calibration.fitting.decay_fit import run_fit
 from calibration.fitting.progress import Progress
 from calibration.formatting import number
@@ -22,7 +22,8 @@ from calibration.results.uncertainty_file import (
     summary_of,
 )
 from calibration.results.write_uncertainty import Uncertainty, write_uncertainty
-from calibration.uncertainty.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats, repeats
+from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats, repeats
+from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.likelihood import Likelihood, likelihood_of, restored_fit
 from calibration.uncertainty.nuts import Samples, sample
 from calibration.uncertainty.profile import Profile, profile

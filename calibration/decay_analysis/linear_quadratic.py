@@ -1,4 +1,4 @@
-"""Decay analysis: logarithmic decrement, linear and quadratic (P-Q) damping.
+"""Decay analysis: linear and quadratic (P-Q) damping from logarithmic decrements.
 
 The law is x'' + p x' + q x'|x'| + w^2 x = 0, of one degree of freedom, with p in 1/s and q in 1/m or 1/rad. Between two
 successive extremes A0, A1 the energy w^2 (A0^2 - A1^2)/2 per unit mass is lost to damping. Along x = a cos wt the loss over
@@ -27,7 +27,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from calibration.campaign.signals import noise_level
-from jaxhydro.dynamics.response import extremes
+from calibration.decay_analysis.decrements import Decrements, decrements
 
 MIN_DECREMENTS = 3  # decrements that a fit of two numbers with an interval needs
 CONFIDENCE = 0.95
@@ -46,50 +46,6 @@ class EstimateWithInterval(NamedTuple):
     value: np.ndarray | float
     lower: np.ndarray | float
     upper: np.ndarray | float
-
-
-@dataclass(frozen=True, eq=False)
-class Decrements:
-    """Pairs of successive extremes of a decay, half a cycle or a whole one apart.
-
-    Attributes:
-        extreme_times: (m,) times of the extremes (s).
-        heights: (m,) absolute values of the extremes (m or rad).
-        first: (n,) index of the first extreme of each pair.
-        second: (n,) index of the second extreme of each pair.
-        cycles: Cycles between the two: 0.5 or 1.
-    """
-
-    extreme_times: np.ndarray
-    heights: np.ndarray
-    first: np.ndarray
-    second: np.ndarray
-    cycles: float
-
-    @property
-    def time(self) -> np.ndarray:
-        """(n,) middle of each pair (s)."""
-        return 0.5 * (self.extreme_times[self.first] + self.extreme_times[self.second])
-
-    @property
-    def amplitude(self) -> np.ndarray:
-        """(n,) mean height of each pair (m or rad)."""
-        return 0.5 * (self.heights[self.first] + self.heights[self.second])
-
-    @property
-    def period(self) -> np.ndarray:
-        """(n,) damped period (s)."""
-        return (self.extreme_times[self.second] - self.extreme_times[self.first]) / self.cycles
-
-    @property
-    def decrement(self) -> np.ndarray:
-        """(n,) logarithmic decrement per whole cycle (Den Hartog 1985, Mechanical Vibrations, chapter 2)."""
-        return np.log(self.heights[self.first] / self.heights[self.second]) / self.cycles
-
-    @property
-    def damping_ratio(self) -> np.ndarray:
-        """(n,) zeta = delta/(4 pi^2 + delta^2)^0.5, of critical: exact for linear damping."""
-        return self.decrement / np.sqrt(4 * math.pi**2 + self.decrement**2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,30 +108,6 @@ class Classical:
     positive_fit: LinearQuadratic | None
     negative_fit: LinearQuadratic | None
     equivalent: EstimateWithInterval | None
-
-
-def decrements(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[Decrements, Decrements, Decrements]:
-    """Find the pairs of extremes of a decay that oscillates about zero.
-
-    Half cycles are those of `decay_cycles`.
-
-    Args:
-        time: (k,) times (s).
-        motion: (k,) motion (m or rad).
-        noise: Standard deviation of the noise on `motion` (m or rad).
-
-    Returns:
-        Half cycles, whole cycles between crests, whole cycles between troughs.
-    """
-    when, value = extremes(np.asarray(time), np.asarray(motion), noise)
-    turn = np.sign(value[1:]) != np.sign(value[:-1])
-    half, whole = np.flatnonzero(turn), np.flatnonzero(turn[1:] & turn[:-1])
-    crest = value[whole] > 0
-    return (
-        Decrements(when, np.abs(value), half, half + 1, 0.5),
-        Decrements(when, np.abs(value), whole[crest], whole[crest] + 2, 1.0),
-        Decrements(when, np.abs(value), whole[~crest], whole[~crest] + 2, 1.0),
-    )
 
 
 def linear_quadratic(pairs: Decrements) -> LinearQuadratic:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES, WAVE
+from calibration.campaign.manifest_sections import IN_WAVES, WAVE
 from calibration.discovery.diagnosis_fits import test_fits_at
 from calibration.discovery.reported_effects import Effect, Evidence
 from calibration.formatting import listed

@@ -188,7 +188,7 @@ class Diagnosis:
             Variables `measured`, `simulated` (with the effects), `before` (without) by test, channel and time; NaN where there
             is none. `half_width`, where tests were held out, is that of the band of 95 %.
         """
-        from calibration.results.write_diagnosis import motions, paired
+        from calibration.results.diagnosis_motions import motions, paired
 
         return motions(self, paired(self))
 

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from calibration.discovery.frequency_bands import Bands, FourierRows, band_powers, cut_into_bands, step_of
@@ -17,8 +17,8 @@ from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import DecayProblem, crossing_period, gather_decays
-from calibration.residuals.measured_seas import sea_step, seas_of
 from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.run_seas import sea_step, seas_of
 from calibration.residuals.run_segments import samples_after_transient
 from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.integrate import clock

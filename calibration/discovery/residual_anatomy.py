@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibration.campaign.manifest import WAVE
+from calibration.campaign.manifest_sections import WAVE
 from calibration.discovery.diagnosis import Finding
 from calibration.formatting import listed, number
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.discovery.effects.candidates import Candidate, requested_table_labels, with_candidates, with_drag
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import noticeable_scales
@@ -21,8 +21,8 @@ from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
-from calibration.residuals.measured_seas import sea_step, with_diffraction
 from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.run_seas import sea_step, with_diffraction
 from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import equilibrium, linearised

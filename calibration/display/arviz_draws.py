@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import jaxhydro
-from calibration.uncertainty.bootstrap import Bootstrap
+from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.nuts import Samples
 
 if TYPE_CHECKING:

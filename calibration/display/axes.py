@@ -7,7 +7,7 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.plots.overview_figures import comparison_figure, records_figure
 from calibration.result import Calibration
-from calibration.results.write_diagnosis import paired
+from calibration.results.diagnosis_motions import paired
 from jaxhydro.choices import unknown
 from jaxhydro.plots.style import style
 

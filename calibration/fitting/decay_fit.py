@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.fitting.decay_part import DecayPart, series_of
 from calibration.fitting.fit import Fit, Report

@@ -11,7 +11,7 @@ from calibration.fitting.decay_part import DecayPart
 from calibration.fitting.levenberg_marquardt import DEFAULT_TRUST, descend
 from calibration.fitting.normal_equations import LeastSquares, normal_equations
 from calibration.fitting.weighted_residuals import AbstractPart
-from calibration.identifiability.directions import Identifiability, identifiability_at
+from calibration.identifiability.findings import Identifiability, identifiability_at
 from calibration.identifiability.standard_deviations import Spread, WeightedProducts
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import Unknowns

@@ -9,14 +9,14 @@ import numpy as np
 
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.wave_band import band_sentence
 from calibration.decay_analysis.period_change import unexplained_period_change
 from calibration.fitting.fit import Fit
 from calibration.fitting.unit_hints import unit_hints
 from calibration.formatting import listed, percent_span
-from calibration.identifiability.directions import Identifiability
+from calibration.identifiability.findings import Identifiability
 from calibration.identifiability.information import IDENTIFIABLE_DEVIATION
 from calibration.identifiability.standard_deviations import Spread
 from calibration.notes import Note, NoteKind, notes_of

@@ -7,7 +7,7 @@ from typing import get_args
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.fitting.decay_fit import held_out, labels_of, prepare_fit, run_fit, space_of
 from calibration.fitting.decay_part import DecayPart
 from calibration.fitting.fit import Fit
@@ -20,8 +20,8 @@ from calibration.fitting.weighted_residuals import AbstractPart, Kind, Loss
 from calibration.formatting import listed, number, percent, with_deviation
 from calibration.notes import NoteKind, notes_of
 from calibration.residuals.abstract_residual import parameters_only
-from calibration.residuals.measured_seas import Seas, sea_step, seas_of, with_diffraction
 from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.run_seas import Seas, sea_step, seas_of, with_diffraction
 from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
 from calibration.residuals.static import set_up_offsets, set_up_periods
 from calibration.residuals.wave_options import Options, options_of

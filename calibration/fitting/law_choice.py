@@ -11,8 +11,8 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.fitting.law_parameters import LAWS, Law
 from calibration.fitting.progress import Progress
 from calibration.fitting.sea_fit import calibrate_in_waves
-from calibration.identifiability.directions import Identifiability
-from calibration.residuals.measured_seas import Seas, seas_of
+from calibration.identifiability.findings import Identifiability
+from calibration.residuals.run_seas import Seas, seas_of
 from calibration.residuals.run_segments import sea_state
 from calibration.residuals.wave_options import Options, options_of
 from calibration.result import Calibration, error_of_energies

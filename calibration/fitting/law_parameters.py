@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from calibration.residuals.measured_seas import Seas
+from calibration.residuals.run_seas import Seas
 from calibration.residuals.run_segments import sea_state
 from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.model import Model

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import get_args
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.fitting.block_part import BlockPart
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.fitting.fit import Fit
@@ -26,8 +26,9 @@ from calibration.fitting.sea_remarks import sea_remarks
 from calibration.notes import NoteKind, notes_of
 from calibration.parameters.families import parameter_family
 from calibration.residuals.abstract_residual import parameters_only
-from calibration.residuals.measured_seas import Seas, SeaTest, compare, sea_step, seas_of, with_diffraction
+from calibration.residuals.measured_seas import SeaTest, compare
 from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.run_seas import Seas, sea_step, seas_of, with_diffraction
 from calibration.residuals.sea_errors import in_bands
 from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
 from calibration.residuals.wave_options import Options, options_of

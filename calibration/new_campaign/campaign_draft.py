@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from calibration.campaign.manifest import Use
+from calibration.campaign.manifest_sections import Use
 from calibration.new_campaign.column_guesses import ColumnGuess
 from calibration.new_campaign.kind_guesses import KindGuess
 

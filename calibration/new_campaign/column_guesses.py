@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
-from calibration.campaign.manifest import CHANNELS, DOFS, WAVE, quantity
-from calibration.campaign.records import valid_values
+from calibration.campaign.manifest_sections import CHANNELS, DOFS, WAVE, quantity
+from calibration.campaign.series import valid_values
 from calibration.new_campaign.column_names import channel_of, is_greek
 from jaxhydro.units import SI
 

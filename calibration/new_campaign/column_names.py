@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from calibration.campaign.manifest import DOFS, WAVE
+from calibration.campaign.manifest_sections import DOFS, WAVE
 
 _GREEK = {"φ": "phi", "ϕ": "phi", "θ": "theta", "ψ": "psi", "η": "eta", "ζ": "zeta"}
 _AXES = dict(zip(("x", "y", "z", "phi", "theta", "psi"), DOFS))

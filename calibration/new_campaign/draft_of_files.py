@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from calibration.campaign.manifest import DOFS, IN_WAVES, WAVE, Use
+from calibration.campaign.manifest_sections import DOFS, IN_WAVES, WAVE, Use
 from calibration.new_campaign.campaign_draft import CampaignDraft, Columns, TestDraft
 from calibration.new_campaign.column_guesses import (
     ColumnGuess,

@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Iterable, Iterator
 
-from calibration.campaign.manifest import IN_WAVES, WAVE
+from calibration.campaign.manifest_sections import IN_WAVES, WAVE
 from calibration.new_campaign.campaign_draft import CampaignDraft, TestDraft
 from calibration.new_campaign.column_guesses import MAX_RADIAN_RANGE, ColumnGuess
 

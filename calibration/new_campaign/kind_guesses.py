@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage, stats
 
-from calibration.campaign.manifest import Kind, quantity
-from calibration.campaign.records import valid_values
+from calibration.campaign.manifest_sections import Kind, quantity
 from calibration.campaign.release import free_motion
+from calibration.campaign.series import valid_values
 from calibration.campaign.signals import noise_level
 
 SMOOTHING_SHARE = 0.01  # of a record, over which velocities are averaged

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from calibration.campaign.records import valid_values
 from calibration.campaign.release import free_motion
+from calibration.campaign.series import valid_values
 from calibration.new_campaign.campaign_draft import TestDraft
 
 USED_SHARE = 0.9  # of the time before a push: its end may move already

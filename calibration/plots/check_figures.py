@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.records import Record
 from jaxhydro.files import safe_name
-from jaxhydro.platform.build import members_of
+from jaxhydro.platform.members_build import members_of
 from jaxhydro.plots.hull_drawing import hull_figure
 from jaxhydro.plots.seas import record_figure
 from jaxhydro.plots.style import MEASURED

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.formatting import listed
 from calibration.report import tables
 from calibration.report.interactive import motion_view

@@ -8,7 +8,7 @@ import numpy as np
 
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.signals import dominant_period, wave_height
 from calibration.formatting import counted, listed, number, signed_percent

@@ -3,7 +3,7 @@
 import math
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.formatting import number, percent
 from calibration.results.comparison_file import ComparisonFile, Pair
 from calibration.vocabulary import Rows

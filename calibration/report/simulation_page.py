@@ -11,7 +11,7 @@ import xarray as xr
 from calibration.formatting import listed, number, percent
 from calibration.report.interactive import motion_view
 from calibration.report.web_page import embedded, inputs_table, render, written_on
-from calibration.results.calibration_file import file_error
+from calibration.results.read_result import file_error
 from calibration.results.result_folder import FIGURES_FOLDER, MOTION_FILE
 from calibration.vocabulary import Rows
 from jaxhydro.analysis.sea_statistics import MIN_RANGE, summary, tables

@@ -4,10 +4,10 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from calibration.campaign.checks import Finding
+from calibration.campaign.finding import Finding
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.formatting import bracketed, counted, listed, number, percent, readable_unit, signed_percent, with_deviation
 from calibration.result import Calibration
 from calibration.results.calibration_file import CalibrationFile, ChannelError, Parameter

@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from calibration.report import calibration_page, comparison_page, diagnosis_page, simulation_page, sweep_page, uncertainty_page
-from calibration.results.calibration_file import CalibrationFile, read_as
+from calibration.results.calibration_file import CalibrationFile
 from calibration.results.comparison_file import ComparisonFile
 from calibration.results.diagnosis_file import DiagnosisFile
+from calibration.results.read_result import read_as
 from calibration.results.result_folder import COMPARISON_FILE, DIAGNOSIS_FILE, MOTION_FILE, RESULT_FILE, UNCERTAINTY_FILE
 from calibration.results.uncertainty_file import UncertaintyFile
 from jaxhydro.errors import InputError, Problem

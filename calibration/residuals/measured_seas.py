@@ -4,64 +4,33 @@ Windows of one file are one continuous run. Its sea is made once, of the whole r
 file. Everything is SI at full scale.
 """
 
-import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.campaign.campaign_hints import motion_hints
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.manifest import WAVE
+from calibration.campaign.motion_hints import motion_hints
 from calibration.campaign.records import Record
-from calibration.campaign.runs import Run, runs
-from calibration.campaign.second_order_hint import second_order_hint
+from calibration.campaign.runs import Run
 from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.run_seas import Seas, sea_step, seas_of, with_diffraction
 from calibration.residuals.run_segments import run_segments, samples_after_transient, simulate_segments
 from calibration.residuals.wave_options import Options
 from calibration.result import Series, TestFit
 from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.observe import observe
-from jaxhydro.dynamics.sea_of_request import share_within
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.dynamics.table_ranges import heading_fault
-from jaxhydro.dynamics.time_steps import largest_step
-from jaxhydro.environment import DOFS, Environment
+from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.hull.hull import Hull
-from jaxhydro.waves.irregular import separated_record
-from jaxhydro.waves.irregular_sea import IrregularSea
-from jaxhydro.waves.sea_limits import sea_limits
 
-MAX_MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
-MIN_BAND_SHARE = 0.95  # of its variance, that should lie in the band
 NO_ZERO = "the campaign states no `zero`: motions count from the reference position"
-
-
-@dataclass(frozen=True, eq=False)
-class RunSea:
-    """Sea of a run.
-
-    Attributes:
-        sea: The sea.
-        mismatch: RMS of the simulated less the measured elevation in the band, over that of the measured elevation.
-        rounds: Number of iterations that separated the second order.
-        inside: Fraction of the record's variance in the band.
-        notes: Warnings, as sentences.
-    """
-
-    sea: IrregularSea
-    mismatch: float
-    rounds: int
-    inside: float
-    notes: tuple[str, ...]
-
-
-Seas: TypeAlias = tuple[tuple[Run, RunSea], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,101 +70,6 @@ class Comparison(NamedTuple):
     notes: tuple[str, ...]
     step: float
     hull: Hull
-
-
-def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
-    """Sea of a run's whole record.
-
-    Raises:
-        InputError: The order, the band or the record is unsuitable.
-    """
-    if run.directions is not None and options.order != 1:
-        raise InputError(run.file, [Problem("order", "1 in a sea of several headings, as its test states", f"{options.order}")])
-    inside = share_within(run.wave, run.step, options.low, options.cutoff)
-    try:
-        separated = separated_record(
-            run.time,
-            run.wave,
-            environment,
-            position=run.position,
-            heading=run.heading,
-            low=options.low,
-            cutoff=options.cutoff,
-            order=options.order,
-            kinds=options.kinds,
-            highest_difference=options.highest_difference,
-        )
-    except ValueError as error:
-        expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
-        raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
-    waves, notes = separated.waves, []
-    if run.directions is not None:
-        waves = run.directions.turned(waves, run.position)
-        notes.append(
-            f"{run.file}: directions of its waves are drawn from what its test states (seed {run.directions.seed}). The sea is "
-            "the record at the gauge; elsewhere only its spectrum is known, and motions agree by spectra, not sample by sample"
-        )
-    sea = IrregularSea(
-        waves,
-        environment,
-        options.order,
-        options.stretching,
-        kinds=options.kinds,
-        highest_difference=options.highest_difference,
-        acting=options.acting,
-    )
-    band = f"{options.low:g} to {options.cutoff:g} Hz"
-    if separated.mismatch > MAX_MISMATCH:
-        notes.append(
-            f"{run.file}: first and second order miss {100 * separated.mismatch:.2g} % of the wave record from {band} "
-            "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it"
-        )
-    if inside < MIN_BAND_SHARE:
-        notes.append(
-            f"{run.file}: only {100 * inside:.0f} % of the wave record's variance is within {band}; "
-            "`wave_band` in campaign.yaml sets another band"
-        )
-    if run.records and all(record.kind == "irregular" for record in run.records):
-        period = record_peak_period(run.wave, run.step, options.low, options.cutoff)
-        count = float(run.time[-1] - run.time[0]) / period
-        limits = sea_limits(4 * float(np.std(run.wave)), period, environment, options.order, count)
-        notes += [f"{run.file}: {limit.text}" for limit in limits]
-    return RunSea(sea, separated.mismatch, separated.rounds, inside, tuple(notes))
-
-
-def with_diffraction(model: Model, options: Options) -> Model:
-    """The model with the diffraction asked for."""
-    return model if options.diffraction is None else model.with_conventions(diffraction=options.diffraction)
-
-
-def sea_step(model: Model, options: Options) -> float:
-    """The largest time step (s) that follows the platform and the waves."""
-    return largest_step(model, options.cutoff)
-
-
-def seas_of(campaign: Campaign, environment: Environment, options: Options, several_headings: bool = False) -> Seas:
-    """The runs of a campaign and their seas, the first with the remark on all wave records.
-
-    Args:
-        campaign: The campaign.
-        environment: Water depth and gravity.
-        options: How waves are made.
-        several_headings: Whether seas of several headings will do: they are compared, not fitted.
-
-    Raises:
-        InputError: A record makes no sea, or a sea has several headings and may not.
-    """
-    campaign_runs = runs(campaign)
-    spread = [record.id for run in campaign_runs if run.directions is not None for record in run.records]
-    if spread and not several_headings:
-        expected = "tests in long-crested waves: seas of several headings can be simulated and compared, not fitted"
-        remedy = "Mark such tests `use: ignore`, or state the heading alone."
-        raise InputError(str(campaign.folder / "campaign.yaml"), [Problem("tests", expected, ", ".join(spread), remedy)])
-    made = [(run, sea_of(run, environment, options)) for run in campaign_runs]
-    if made and options.order == 2 and not campaign.manifest.records.model_fields_set:
-        hint = second_order_hint([(run, run_sea.sea) for run, run_sea in made], (options.low, options.cutoff))
-        made[0] = (made[0][0], dataclasses.replace(made[0][1], notes=(*made[0][1].notes, *hint)))
-    return tuple(made)
 
 
 def compare(

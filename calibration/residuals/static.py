@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.campaign.manifest import Period
+from calibration.campaign.manifest_sections import Period
 from calibration.campaign.records import Record
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import AbstractGroupedResidual

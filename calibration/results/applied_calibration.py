@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from calibration.residuals.wave_options import Options
-from calibration.results.calibration_file import CalibrationFile, file_error, read_saved
+from calibration.results.calibration_file import CalibrationFile, read_saved
+from calibration.results.read_result import file_error
 from calibration.results.strip_conventions import StripConventions
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError, shown, suggest

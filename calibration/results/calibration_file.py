@@ -1,23 +1,19 @@
 """Model and reading of calibration.json."""
 
-import json
 from os import PathLike
-from pathlib import Path
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field
 
-from calibration.campaign.manifest import Use
+from calibration.campaign.manifest_sections import Use
 from calibration.notes import NoteKind
-from calibration.residuals.wave_options import Options
-from calibration.results.result_folder import DIAGNOSIS_FILE, RESULT_FILE, Figure
+from calibration.results.read_result import read_as
+from calibration.results.result_folder import Figure
+from calibration.results.sea_options_section import SeaOptions
 from calibration.results.strip_conventions import StripConventions
-from jaxhydro.errors import InputError, NonNegative, Number, Positive, Problem, suggest_path, validate
+from jaxhydro.errors import Number
 from jaxhydro.platform.body import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 from jaxhydro.result_model import ReferenceSeaState, ResultModel
-from jaxhydro.waves.irregular_sea import Acting
-from jaxhydro.waves.sea import Stretching
-from jaxhydro.waves.second_order import Kind
 
 EnergyErrors = dict[str, dict[str, Number]]  # relative error of the energy, by motion and band
 
@@ -180,29 +176,6 @@ class TestDescription(ResultModel):
     linear_quadratic: LinearQuadraticDamping | None = None
 
 
-class SeaOptions(ResultModel):
-    """How waves were made and act. See `calibration.residuals.wave_options.Options`."""
-
-    order: Literal[1, 2]
-    stretching: Stretching
-    diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None
-    low: NonNegative
-    cutoff: Positive
-    kinds: tuple[Kind, ...] = Field(min_length=1)
-    highest_difference: Positive | None
-    acting: Acting
-
-    @model_validator(mode="after")
-    def _band(self) -> "SeaOptions":
-        if not self.low < self.cutoff:
-            raise ValueError(f"`cutoff` above `low`, {self.low:g} Hz")
-        return self
-
-    def options(self) -> Options:
-        """The same options, as calibrations take them."""
-        return Options(**self.model_dump())
-
-
 class CalibrationFile(ResultModel):
     """Content of calibration.json, and the part of diagnosis.json that both files have.
 
@@ -256,9 +229,6 @@ class CalibrationFile(ResultModel):
         return errors
 
 
-S = TypeVar("S", bound=ResultModel)
-
-
 def read_saved(path: str | PathLike[str]) -> CalibrationFile:
     """Read a calibration.json or diagnosis.json, or the one in a folder.
 
@@ -268,43 +238,6 @@ def read_saved(path: str | PathLike[str]) -> CalibrationFile:
     return read_as(CalibrationFile, path)
 
 
-def file_of(path: str | PathLike[str]) -> Path:
-    """The diagnosis.json or calibration.json of a folder, or the file itself."""
-    path = Path(path)
-    try:
-        return path / (DIAGNOSIS_FILE if (path / DIAGNOSIS_FILE).is_file() else RESULT_FILE) if path.is_dir() else path
-    except (OSError, ValueError):
-        return path  # reading it says what is wrong
-
-
-def read_as(kind: type[S], path: str | PathLike[str]) -> S:
-    """Read a result file as a given model of its content; see `read_saved`."""
-    path = file_of(path)
-    try:
-        data = json.loads(path.read_bytes().decode("utf-8-sig"))
-    except FileNotFoundError:
-        missing = "no such file" if path.suffix else "no such folder"
-        raise file_error(
-            path, f"a {RESULT_FILE}, as `jaxhydro calibrate` writes it", missing, hint=suggest_path(path)
-        ) from None
-    except (json.JSONDecodeError, RecursionError) as error:
-        position = f"line {error.lineno}, column {error.colno}" if isinstance(error, json.JSONDecodeError) else ""
-        mistake = f"a mistake in it ({getattr(error, 'msg', 'lists nested too deeply')})"
-        raise file_error(path, "valid JSON, as jaxhydro writes it", mistake, position) from None
-    except UnicodeDecodeError:
-        raise file_error(path, "text in UTF-8", "other bytes") from None
-    except (OSError, ValueError) as error:
-        raise file_error(path, "a file that can be read", str(getattr(error, "strerror", None) or error)) from None
-    if not isinstance(data, dict):
-        raise file_error(path, "a mapping of keys to values", type(data).__name__)
-    return validate(kind, data, str(path))
-
-
 def read_values(path: str | PathLike[str]) -> dict[str, float]:
     """The calibrated values in a calibration.json or diagnosis.json, by label. Raises InputError."""
     return read_saved(path).values()
-
-
-def file_error(path: Path, expected: str, found: str, where: str = "", hint: str = "") -> InputError:
-    """Error for one fault in a written result."""
-    return InputError(str(path), [Problem(where, expected, found, hint)])

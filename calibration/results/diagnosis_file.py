@@ -5,7 +5,8 @@ from os import PathLike
 from pydantic import Field
 
 from calibration.discovery.diagnosis import Outcome
-from calibration.results.calibration_file import CalibrationFile, FittedModel, Parameter, read_as
+from calibration.results.calibration_file import CalibrationFile, FittedModel, Parameter
+from calibration.results.read_result import read_as
 from jaxhydro.errors import Number
 from jaxhydro.result_model import ResultModel
 

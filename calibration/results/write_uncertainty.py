@@ -19,7 +19,7 @@ from calibration.results.uncertainty_file import (
     ProfileCurve,
     UncertaintyFile,
 )
-from calibration.uncertainty.bootstrap import Bootstrap
+from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.likelihood import Likelihood
 from calibration.uncertainty.nuts import Samples
 from calibration.uncertainty.profile import Profile

@@ -7,12 +7,13 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.campaign.manifest import Test
+from calibration.campaign.manifest_sections import Test
 from calibration.campaign.records import Record
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.fitting.fit import Fit
 from calibration.formatting import listed, percent
-from calibration.identifiability.directions import Identifiability, active_parameters, weak_directions
+from calibration.identifiability.directions import active_parameters, weak_directions
+from calibration.identifiability.findings import Identifiability
 from calibration.identifiability.information import shared_information, submatrix
 from calibration.identifiability.statements import Direction, Parameters
 from calibration.parameters.space import ParameterSpace

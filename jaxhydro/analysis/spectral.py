@@ -11,7 +11,7 @@ import scipy  # scipy.signal is imported when it is used: it takes a second
 from jaxtyping import Float
 
 from jaxhydro.environment import DOFS
-from jaxhydro.waves.irregular import sampling_interval
+from jaxhydro.waves.recorded_waves import sampling_interval
 
 SEGMENT = 1000.0  # s: 0.001 Hz between frequencies, so that the lowest band, 0.005 to 0.025 Hz, has twenty of them
 

@@ -15,9 +15,10 @@ from jaxhydro.interop.openfast.export_deck import export_deck
 from jaxhydro.interop.openfast.export_moordyn import ALONE, export_lines
 from jaxhydro.interop.platform_text import counted, items_page
 from jaxhydro.interop.raft_export_design import DESIGN, export_design
-from jaxhydro.platform.build import build, members_of
+from jaxhydro.platform.build import build
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.drag_laws import drag_laws_of
+from jaxhydro.platform.members_build import members_of
 from jaxhydro.platform.schema import Platform, load_platform
 
 PAGE = "export.md"

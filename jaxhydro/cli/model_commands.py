@@ -220,7 +220,7 @@ def _simulate_campaign(
     campaign: Path, out: Path | None, calibration: Path | None, asked: dict[str, Any], figures: bool
 ) -> None:
     out = options.results_folder(out, "comparison.json", campaign)
-    from calibration.commands.calibrate_command import simulate_campaign
+    from calibration.commands.simulate_campaign_command import simulate_campaign
 
     if not simulate_campaign(campaign, out, calibration=calibration, asked=asked, figures=figures):
         raise typer.Exit(NOT_CONVERGED)

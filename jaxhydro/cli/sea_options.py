@@ -13,7 +13,7 @@ from jaxhydro.dynamics.requested_sea import Record, RequestedSea, usual_transien
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.files import embedded_campaigns
 from jaxhydro.units import SI
-from jaxhydro.waves.irregular import sampling_interval
+from jaxhydro.waves.recorded_waves import sampling_interval
 
 ORDER, SEED = 2, 0
 MAX_ORDER = 30  # Fourier components of a regular wave

@@ -27,9 +27,10 @@ from jaxhydro.remarks import Remark
 from jaxhydro.rotations import rotation
 from jaxhydro.units import for_people, unit_of
 from jaxhydro.waves.regular_waves import regular_wave, series_remarks
-from jaxhydro.waves.sea import Stretching, WaveSea, elevation_at_origin
+from jaxhydro.waves.sea import Stretching, elevation_at_origin
 from jaxhydro.waves.sea_limits import sea_limits
 from jaxhydro.waves.wave_errors import NoWaveError, StretchingError
+from jaxhydro.waves.wave_sea import WaveSea
 
 RAMP_PERIODS = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32

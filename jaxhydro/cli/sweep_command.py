@@ -10,7 +10,8 @@ from jaxhydro.cli.simulate_command import print_remarks, print_rest, print_used
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interrupts import asked_to_stop, finished, stop_if_asked
 from jaxhydro.sweep.cluster import workers_of
-from jaxhydro.sweep.execute import PreparedSweep, Progress, SessionResult, opened, prepared, run_all, to_do
+from jaxhydro.sweep.execute import Progress, SessionResult, opened, run_all, to_do
+from jaxhydro.sweep.prepared_sweep import PreparedSweep, prepared
 from jaxhydro.sweep.resources import chosen
 from jaxhydro.sweep.sea_states import State, runs_in_words
 from jaxhydro.sweep.store import RESULTS, locked_folder, open_results

@@ -18,8 +18,9 @@ from jaxhydro.integrators import adams_bashforth
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.rotations import rotation
 from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
-from jaxhydro.waves.sea import AbstractSea, WaveSea
+from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.support_sea import SupportSea
+from jaxhydro.waves.wave_sea import WaveSea
 
 MAX_PAIRS = 10_000  # pairs of components of which the second order of a sea of several headings is summed directly
 

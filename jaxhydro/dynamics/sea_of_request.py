@@ -18,10 +18,12 @@ from jaxhydro.waves.components import Components
 from jaxhydro.waves.directional_spectrum import (
     directional_components,
 )
-from jaxhydro.waves.irregular import separated_record, spectrum_components
+from jaxhydro.waves.irregular import spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.recorded_waves import separated_record
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz, white_noise
 from jaxhydro.waves.spreading import circular_moments
+from jaxhydro.waves.wave_errors import BandError, BreakingError
 
 MAX_RECORD_MISMATCH = 0.01  # of a record in the band, that first and second order may miss by root mean square
 NOTED_SHARE = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
@@ -163,10 +165,10 @@ def _from_spectrum(
             waves = spectrum_components(spectrum, duration, model.environment, heading=heading, **drawn)
         else:
             waves = directional_components(directional, duration, model.environment, **drawn)
+    except BreakingError as error:
+        option = "--hs" if directional is None else "--sea" if asked.measured is None else "--sea-file"
+        raise InputError(option, [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
     except ValueError as error:
-        if "break" in str(error):
-            option = "--hs" if directional is None else "--sea" if asked.measured is None else "--sea-file"
-            raise InputError(option, [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
         raise impossible("--cutoff", error) from None
     share = float(spectrum(waves.omega).sum() * 2 * math.pi / waves.period) / (hs**2 / 16)
     if share < MIN_SHARE:
@@ -206,7 +208,7 @@ def _from_record(model: Model, asked: RequestedSea, record: Record, notes: list[
             order=asked.order,
         )
     except ValueError as error:
-        option = "--cutoff" if "cutoff" in str(error) or "band" in str(error) else f"{record.source}: column {record.column}"
+        option = "--cutoff" if isinstance(error, BandError) else f"{record.source}: column {record.column}"
         raise impossible(option, error) from None
     if separation.mismatch > MAX_RECORD_MISMATCH:
         missed = (

@@ -13,7 +13,8 @@ from jaxhydro.loads.base import AbstractLoad
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.excitation import TABLE_END_TOLERANCE
-from jaxhydro.waves.sea import AbstractSea, WaveSea
+from jaxhydro.waves.sea import AbstractSea
+from jaxhydro.waves.wave_sea import WaveSea
 
 WARNING_SHARE = 0.01  # of a sea's energy outside a table, from which it is a warning
 NOTE_SHARE = 5e-5  # of a sea's energy outside a table, from which it is said at all

@@ -12,7 +12,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.coefficient_labels import Shares, owners, shares_of
-from jaxhydro.hull.strips import Member, Strips
+from jaxhydro.hull.member import Member
+from jaxhydro.hull.strips import Strips
 from jaxhydro.hull.waterplane import wet_section
 from jaxhydro.quick_jit import on_device
 

@@ -13,7 +13,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.ends import Ends, ends
-from jaxhydro.hull.strips import END_WETTING_LENGTH, FACE_WETTING_LENGTH, Elements, Member, Strips, cut
+from jaxhydro.hull.member import Member
+from jaxhydro.hull.strips import END_WETTING_LENGTH, FACE_WETTING_LENGTH, Elements, Strips, cut
 from jaxhydro.hull.waterplane import Leaning, Waterplane, leaning, segment, waterplane
 from jaxhydro.quick_jit import on_device, quick_jit
 from jaxhydro.scales import covered, entered

@@ -123,7 +123,7 @@ MIN_LEAN = 0.02  # rad: what leans less is upright
 
 
 def leaning(members: Sequence[Any]) -> Leaning | None:
-    """Load of the `strips.Member`s that lean and that still water cuts, or None."""
+    """Load of the `Member`s that lean and that still water cuts, or None."""
     rows = []
     for member in members:
         low, high = sorted((float(member.a[2]), float(member.b[2])))
@@ -137,7 +137,7 @@ def leaning(members: Sequence[Any]) -> Leaning | None:
 
 
 def waterplane(members: Sequence[Any], size: float = 1.0) -> Waterplane | None:
-    """Load of the `strips.Member`s that lie at the surface, or None."""
+    """Load of the `Member`s that lie at the surface, or None."""
     width, length = list[float](), list[float]()
     strip, up, count = list[int](), list[int](), 0
     for member in members:

@@ -9,7 +9,8 @@ from jaxtyping import Complex, Float
 
 from jaxhydro.environment import STANDARD_GRAVITY
 from jaxhydro.errors import shown
-from jaxhydro.interop.capytaine_radiation import PAIR, Dataset, along_omega, computed, motions, open_capytaine, single
+from jaxhydro.interop.capytaine_dataset import PAIR, Dataset, open_capytaine
+from jaxhydro.interop.capytaine_radiation import along_omega, computed, motions, single
 from jaxhydro.interop.computed_water import water_notes, wave_phase
 from jaxhydro.interop.wamit_hydrostatics import FileHydrostatics
 from jaxhydro.interop.wamit_tables import distinct, same_heading

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxhydro.dynamics.model import Model
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 from jaxhydro.interop.conversion import ConvertedItem
 
 

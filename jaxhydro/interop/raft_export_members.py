@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 from jaxhydro.interop.export_source import ExportSource
 from jaxhydro.interop.openfast.mass_parts import tidy
 from jaxhydro.interop.raft_export_notes import RaftNotes

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from jaxhydro.hull.strips import COLUMN_SLOPE
+from jaxhydro.hull.member import COLUMN_SLOPE
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
 from jaxhydro.interop.raft_masses import twist
 from jaxhydro.interop.raft_member import RaftMember

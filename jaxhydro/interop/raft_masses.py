@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 from jaxhydro.interop.frustum import Moments, hollow_frustum, solid_frustum
 from jaxhydro.interop.raft_member import RaftMember, cap_extent
 from jaxhydro.interop.raft_schema import Effect, Turbine

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxhydro.interop import wamit_drift, wamit_excitation
-from jaxhydro.interop.capytaine_radiation import open_capytaine
+from jaxhydro.interop.capytaine_dataset import open_capytaine
 from jaxhydro.interop.capytaine_waves import capytaine_headings
 from jaxhydro.interop.nemoh_tables import nemoh_headings
 from jaxhydro.interop.wamit_tables import headings_in, table_of

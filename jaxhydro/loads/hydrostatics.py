@@ -9,7 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.hull.strips import END_WETTING_LENGTH, Member
+from jaxhydro.hull.member import Member
+from jaxhydro.hull.strips import END_WETTING_LENGTH
 from jaxhydro.hull.waterplane import chord, segment
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant

@@ -1,6 +1,5 @@
 """Model of a platform file."""
 
-import math
 import warnings
 from dataclasses import replace
 from os import PathLike
@@ -8,7 +7,6 @@ from os import PathLike
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
 
 from jaxhydro.dynamics.conventions import Conventions
 from jaxhydro.dynamics.model import Model
@@ -17,17 +15,16 @@ from jaxhydro.environment import Environment
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.hull.ends import Ends
 from jaxhydro.hull.hull import Hull
-from jaxhydro.hull.strips import COLUMN_SLOPE, Elements, Member
+from jaxhydro.hull.member import COLUMN_SLOPE
+from jaxhydro.hull.strips import Elements
 from jaxhydro.jax_settings import need_float64
 from jaxhydro.loads import (
-    AbstractLines,
     AbstractLoad,
     AddedMass,
     Buoyancy,
     EndInertia,
     GuidedMasses,
     LinearDamping,
-    MooringLines,
     MorisonDrag,
     QuadraticDamping,
     RotorThrust,
@@ -40,17 +37,15 @@ from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import with_exponents
 from jaxhydro.parameters import strongly_typed
 from jaxhydro.platform import schema as schema
-from jaxhydro.platform.catenary_build import catenary_lines, catenary_remarks
-from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.computed_hydrostatics import with_hydrostatics
 from jaxhydro.platform.computed_loads import tables_of
 from jaxhydro.platform.damper_build import damper_loads, damper_mass, damper_remarks
 from jaxhydro.platform.diffraction_correction_build import with_diffraction_correction
 from jaxhydro.platform.drag_laws import DragLaw, plain_drag, with_drag_laws
-from jaxhydro.platform.tension_table_build import tension_table_lines
-from jaxhydro.platform.tension_table_schema import TensionTableMooring
-from jaxhydro.quick_jit import on_device, quick_jit
-from jaxhydro.remarks import Remark, as_warnings
+from jaxhydro.platform.matrix_schema import entries_of
+from jaxhydro.platform.members_build import check_wetting, members_of
+from jaxhydro.platform.mooring_build import line_pull, mooring_loads, mooring_remarks
+from jaxhydro.quick_jit import on_device
 from jaxhydro.scales import size_of
 from jaxhydro.water import AbstractWaterEffect, CurrentProfile
 from jaxhydro.waves.sea_state import SeaState
@@ -96,28 +91,28 @@ def build(platform: schema.Platform) -> Model:
     mass, centre, inertia = platform.rigid_body.combined()
     body = RigidBody(on_device(mass), on_device(centre), on_device(inertia))
     members = members_of(platform)
-    _none_partly_wet(members, platform)
+    check_wetting(members, platform)
     size = size_of(mass, water.density)
     hull = Hull.of(members, size)
     geometry = buoyancy(() if platform.hydrostatics.linear else members, size)
     platform, coupling, remarks = with_hydrostatics(platform, geometry)
     buoyancy_load = _with_file_values(geometry, platform, mass, float(centre[2]))
     loads: list[AbstractLoad] = [Weight(mass=body.mass, centre=body.centre), buoyancy_load, *coupling]
-    loads += _mooring(platform)
+    loads += mooring_loads(platform)
     for name, matrix, load in (
         ("linear_damping", platform.linear_damping.matrix(), LinearDamping),
         ("quadratic_damping", platform.quadratic_damping.matrix(), QuadraticDamping),
         ("added_mass", platform.added_mass.matrix(), AddedMass),
     ):
         letter = "A" if name == "added_mass" else "B"
-        if values := _entries(letter, matrix):
+        if values := entries_of(letter, matrix):
             loads.append(load(values))
     loads += _guided(platform) + damper_loads(platform)
     if (rotor := platform.rotor) is not None:
         loads.append(RotorThrust(on_device(rotor.hub), on_device(rotor.thrust), on_device(rotor.damping)))
     computed, table_remarks = tables_of(platform, buoyancy_load)
     loads += computed
-    if values := _entries("C", platform.stiffness.matrix()):
+    if values := entries_of("C", platform.stiffness.matrix()):
         loads.append(Stiffness(values))
     if members:
         coupled = platform.drag_speed == "vector"
@@ -131,7 +126,7 @@ def build(platform: schema.Platform) -> Model:
     conventions = Conventions(
         platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal
     )
-    all_remarks = (*_of_mooring(platform), *damper_remarks(platform), *remarks, *table_remarks)
+    all_remarks = (*mooring_remarks(platform), *damper_remarks(platform), *remarks, *table_remarks)
     flowing: tuple[AbstractWaterEffect, ...] = ()
     if water.current is not None:
         height, velocity = water.current.profile(water.depth)
@@ -160,27 +155,6 @@ def model_of(platform: schema.Platform, diffraction: str | None = None, elements
         platform = platform.model_copy(update={"members": tuple(members)})
     model = build(platform)
     return model if diffraction is None else model.with_conventions(diffraction=str(diffraction))
-
-
-def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
-    """Raise InputError for pontoons that still water cuts and whose waterplane is not modelled.
-
-    Modelled are level members, and inclined ones that are cut through their sides (`waterplane`).
-    """
-    names = [member.name for member in platform.members for _ in member.heading]
-    where = {name: i for i, name in reversed(list(enumerate(member.name for member in platform.members)))}
-    problems = [
-        Problem(
-            f"members[{where[name]}]",
-            "a member flatter than 45 deg to be level, or clear of still water, or cut by it between its ends",
-            f"{name!r}, of whose height {member.submerged:.0%} is under it",
-            "Make what floats of level or upright members, side by side; let a brace end well above still water.",
-        )
-        for name, member in zip(names, members, strict=True)
-        if member.pierced and not (member.floats or member.fills)
-    ]
-    if problems:
-        raise InputError(platform.name, list(dict.fromkeys(problems)))
 
 
 def _in_seas(model: Model, platform: schema.Platform) -> tuple[AbstractLoad, ...]:
@@ -215,43 +189,11 @@ def _chosen_drag(platform: schema.Platform, model: Model) -> dict[str, DragLaw]:
     return {label: law for label, law in laws.items() if label in plain_drag(model)}
 
 
-def members_of(platform: schema.Platform) -> list[Member]:
-    """Members of the platform, each copied to its headings."""
-    members = []
-    for member in platform.members:
-        stations, sizes = member.profile()
-        for copy, heading in enumerate(member.heading):
-            c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
-            turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-            members.append(
-                Member(
-                    name=member.name if len(member.heading) == 1 else f"{member.name}_{copy + 1}",
-                    group=member.group,
-                    circular=member.shape == "circ",
-                    a=turn @ np.array(member.rA),
-                    b=turn @ np.array(member.rB),
-                    stations=stations,
-                    sizes=sizes,
-                    # the width of an upright box lies along its heading
-                    twist=math.radians(member.gamma) + (math.radians(heading) if member.rA[:2] == member.rB[:2] else 0.0),
-                    elements=member.elements,
-                    maccamy_fuchs=member.maccamy_fuchs,
-                    points=member.points,
-                    shared=platform.coefficients[member.group].shared(),
-                )
-            )
-    return members
-
-
 def _coefficients(platform: schema.Platform, symbol: str, *parts: Elements | Ends) -> dict[tuple[str, str], float]:
     """Coefficients of elements and ends by group and kind, in the order of the platform file."""
     numbers = {group: row.numbers() for group, row in platform.coefficients.items()}
     keys, used = [(group, kind) for group in numbers for kind in "tz"], {key for part in parts for key in part.owners(symbol)}
     return {(group, kind): numbers[group][f"{symbol}_{kind}"] for group, kind in keys if (group, kind) in used}
-
-
-def _entries(letter: str, matrix: np.ndarray) -> dict:
-    return {f"{letter}{i + 1}{j + 1}": float(matrix[i, j]) for i in range(6) for j in range(6) if matrix[i, j] != 0.0}
 
 
 def _guided(platform: schema.Platform) -> list[AbstractLoad]:
@@ -264,33 +206,6 @@ def _guided(platform: schema.Platform) -> list[AbstractLoad]:
     ]
 
 
-def _of_mooring(platform: schema.Platform) -> tuple[Remark, ...]:
-    """Warnings of mooring lines that are slack or stretched by much at rest."""
-    if isinstance(platform.mooring, Catenary):
-        return as_warnings(catenary_remarks(platform.mooring, platform.water, platform.name))
-    if isinstance(platform.mooring, TensionTableMooring):
-        return as_warnings(platform.mooring.remarks())
-    slack = platform.mooring.slackness() if isinstance(platform.mooring, schema.LinearSprings) else ""
-    return as_warnings([slack] if slack else [])
-
-
-def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
-    mooring = platform.mooring
-    if isinstance(mooring, schema.StiffnessMatrix):
-        return [Stiffness(_entries("C", mooring.matrix()), jnp.asarray(mooring.preload), "mooring")]
-    if isinstance(mooring, Catenary):
-        return [catenary_lines(mooring, platform.water)]
-    if isinstance(mooring, TensionTableMooring):
-        return [tension_table_lines(mooring)]
-    if not isinstance(mooring, schema.LinearSprings):
-        return []
-    springs = {f"line{i + 1}": line.spring() for i, line in enumerate(mooring.lines)}
-    stiffness, unstretched = ({name: spring[k] for name, spring in springs.items()} for k in (0, 1))
-    anchor = jnp.asarray(np.array([line.anchor for line in mooring.lines], float).T)
-    fairlead = jnp.asarray(np.array([line.fairlead for line in mooring.lines], float).T)
-    return [MooringLines(anchor, fairlead, stiffness, unstretched)]
-
-
 def _with_file_values(load: Buoyancy, platform: schema.Platform, mass: float, centre: float) -> Buoyancy:
     """Buoyancy with the values of the platform file in place of those of the members' geometry.
 
@@ -301,7 +216,7 @@ def _with_file_values(load: Buoyancy, platform: schema.Platform, mass: float, ce
     geometry = load.upright(weight_density)
     volume = hydrostatics.displaced_volume
     if volume is None:
-        pull = sum(float(m.preload[2]) if isinstance(m, Stiffness) else _line_pull(m) for m in _mooring(platform))
+        pull = sum(float(m.preload[2]) if isinstance(m, Stiffness) else line_pull(m) for m in mooring_loads(platform))
         borne = mass + sum(guided.mass for guided in platform.guided_masses if guided.weight)
         borne += damper_mass(platform)
         volume = (
@@ -324,15 +239,3 @@ def _with_file_values(load: Buoyancy, platform: schema.Platform, mass: float, ce
         stiffness.append(extra if buoyant is None else buoyant - geometry[name])
     changed = (on_device(force), on_device(stiffness))
     return eqx.tree_at(lambda b: (b.extra_force, b.extra_stiffness), load, changed)
-
-
-def _line_pull(load: AbstractLoad) -> float:
-    """Vertical force (N) of lines at the reference position."""
-    assert isinstance(load, AbstractLines)
-    tension, towards = (np.asarray(x) for x in _pull(load))
-    return float((tension * towards[2]).sum())
-
-
-@quick_jit
-def _pull(load: AbstractLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
-    return load.tension(jnp.zeros(6), jnp.eye(3))

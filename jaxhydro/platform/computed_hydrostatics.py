@@ -14,6 +14,7 @@ from jaxhydro.interop.nemoh_hydrostatics import read_nemoh_hydrostatics
 from jaxhydro.interop.wamit_hydrostatics import FileHydrostatics, read_hydrostatics
 from jaxhydro.loads import Buoyancy, HydrostaticCoupling
 from jaxhydro.platform import schema as schema
+from jaxhydro.platform.computed_tables_schema import Hydrostatics
 from jaxhydro.quick_jit import quick_jit
 from jaxhydro.remarks import Remark, as_warnings
 from jaxhydro.rotations import rotation
@@ -29,12 +30,12 @@ class FileStatics(NamedTuple):
     The stiffness is None without a file.
     """
 
-    hydrostatics: schema.Hydrostatics
+    hydrostatics: Hydrostatics
     stiffness: np.ndarray | None
     remarks: tuple[Remark, ...]
 
 
-def hydrostatics_of(hydrostatics: schema.Hydrostatics, water: schema.Water) -> FileStatics:
+def hydrostatics_of(hydrostatics: Hydrostatics, water: schema.Water) -> FileStatics:
     """Hydrostatics completed by the values of their file.
 
     Raises:
@@ -66,9 +67,7 @@ def hydrostatics_of(hydrostatics: schema.Hydrostatics, water: schema.Water) -> F
     return FileStatics(hydrostatics.model_copy(update=filled), contents.stiffness, told)
 
 
-def _values(
-    hydrostatics: schema.Hydrostatics, contents: FileHydrostatics, water: schema.Water
-) -> tuple[dict[str, float], list[str]]:
+def _values(hydrostatics: Hydrostatics, contents: FileHydrostatics, water: schema.Water) -> tuple[dict[str, float], list[str]]:
     """Keys of `hydrostatics` and their values by a file, and notes."""
     values: dict[str, float] = {"C33": float(contents.stiffness[2, 2])}
     if contents.volume is not None:
@@ -122,7 +121,7 @@ def _slope(load: Buoyancy, weight_density: Float[Array, ""]) -> Float[Array, "6 
     return jax.jacfwd(lambda q: load.force(q, rotation(q[3:]), weight_density))(jnp.zeros(6))
 
 
-def weight_doubt(hydrostatics: schema.Hydrostatics, stiffness: np.ndarray, of_members: np.ndarray, weight: float) -> list[str]:
+def weight_doubt(hydrostatics: Hydrostatics, stiffness: np.ndarray, of_members: np.ndarray, weight: float) -> list[str]:
     """Warning where a .hst file seems to include the weight, or not, against the declaration.
 
     Args:

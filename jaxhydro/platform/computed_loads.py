@@ -20,6 +20,7 @@ from jaxhydro.loads import AbstractLoad, Buoyancy, ComputedAddedMass, ComputedEx
 from jaxhydro.loads.computed_excitation import CORNER
 from jaxhydro.platform import schema as schema
 from jaxhydro.platform.computed_hydrostatics import hydrostatic_stiffness
+from jaxhydro.platform.computed_tables_schema import Drift, Excitation, Radiation
 from jaxhydro.platform.table_checks import (
     Column,
     LongWaves,
@@ -45,7 +46,7 @@ class RealisedRadiation(NamedTuple):
     remarks: tuple[Remark, ...]
 
 
-def radiation_of(radiation: schema.Radiation, density: float) -> tuple[ComputedRadiation, RealisedRadiation]:
+def radiation_of(radiation: Radiation, density: float) -> tuple[ComputedRadiation, RealisedRadiation]:
     """Radiation load of a platform file, with its coefficients and state space.
 
     Raises:
@@ -60,7 +61,7 @@ def radiation_of(radiation: schema.Radiation, density: float) -> tuple[ComputedR
     return ComputedRadiation(rates, drive, output, jnp.asarray(share), highest), realised
 
 
-def added_mass_of(radiation: schema.Radiation, coefficients: RadiationCoefficients) -> ComputedAddedMass | None:
+def added_mass_of(radiation: Radiation, coefficients: RadiationCoefficients) -> ComputedAddedMass | None:
     """Added mass of a file at infinite frequency, or None where nothing takes it.
 
     The platform file takes it, or `diagnose` may.
@@ -79,7 +80,7 @@ def added_mass_of(radiation: schema.Radiation, coefficients: RadiationCoefficien
 
 
 @lru_cache(maxsize=8)
-def _realised(radiation: schema.Radiation, stamp: int, density: float) -> RealisedRadiation:
+def _realised(radiation: Radiation, stamp: int, density: float) -> RealisedRadiation:
     source, notes = radiation.file, list[str]()
     if radiation.kind == "wamit":
         assert not isinstance(radiation.body, str)
@@ -104,13 +105,13 @@ def _realised(radiation: schema.Radiation, stamp: int, density: float) -> Realis
     return RealisedRadiation(coefficients, space, (*as_warnings(doubts), *map(Remark, notes)))
 
 
-def _column(radiation: schema.Radiation) -> str:
+def _column(radiation: Radiation) -> str:
     """Hint for a file that makes no sense: the quantity of its first column, as stated."""
     return f"Its first column is read by {radiation.by}: see `by`." if radiation.kind == "wamit" else ""
 
 
 def excitation_of(
-    excitation: schema.Excitation, water: schema.Water, corner: float = CORNER
+    excitation: Excitation, water: schema.Water, corner: float = CORNER
 ) -> tuple[ComputedExcitation, tuple[Remark, ...]]:
     """Excitation load of a platform file, and remarks.
 
@@ -151,7 +152,7 @@ def excitation_of(
     return load, (*as_warnings(doubts), *map(Remark, notes))
 
 
-def drift_of(drift: schema.Drift, water: schema.Water) -> tuple[DriftTransfer, tuple[Remark, ...]]:
+def drift_of(drift: Drift, water: schema.Water) -> tuple[DriftTransfer, tuple[Remark, ...]]:
     """Drift load of a platform file, and remarks.
 
     Raises:

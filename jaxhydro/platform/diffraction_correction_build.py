@@ -19,7 +19,7 @@ from jaxhydro.loads.forces_at_rest import COVERED, ForcesAtRest
 from jaxhydro.quick_jit import on_device, quick_jit
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.excitation import AnyExcitation, DirectionalExcitation, Excitation
-from jaxhydro.waves.sea import WaveSea
+from jaxhydro.waves.wave_sea import WaveSea
 
 MIN_FREQUENCIES = 240  # between which forces of strips, whose phase turns with frequency, are linear within 0.1 %
 

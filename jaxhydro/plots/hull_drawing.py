@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from scipy.spatial import ConvexHull
 
+from jaxhydro.hull.member import Member
 from jaxhydro.hull.outline import CORNERS, circle
-from jaxhydro.hull.strips import Member
 from jaxhydro.plots.style import GREY, MEASURED, WAVE, header, stack
 
 POINTS = 48  # of the outline of a circular section

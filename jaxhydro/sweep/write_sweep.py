@@ -15,7 +15,7 @@ from jaxhydro.plots.style import save, style
 from jaxhydro.result_model import finite_or_null, stated
 from jaxhydro.sweep.lifetime import lifetime
 from jaxhydro.sweep.sea_states import State
-from jaxhydro.sweep.store import DONE, FAILED
+from jaxhydro.sweep.store_layout import DONE, FAILED
 from jaxhydro.sweep.sweep_figures import exceedance_figure, scatter_figure
 from jaxhydro.sweep.sweep_results import Failure, Heading, LifetimeStatistics, RunCounts, SweepOptions, SweepResults
 

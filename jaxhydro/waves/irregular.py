@@ -1,4 +1,4 @@
-"""Components of irregular seas, drawn from a spectrum or taken from a measured elevation.
+"""Components of irregular seas, drawn from a spectrum.
 
 Frequencies are successive harmonics of a period. These builders run once per sea, in NumPy; their results go into jitted
 code.
@@ -6,9 +6,7 @@ code.
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -17,17 +15,8 @@ from jaxhydro.choices import check
 from jaxhydro.environment import Environment
 from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.components import Components, components
-from jaxhydro.waves.continuation import continued
 from jaxhydro.waves.dispersion import wavenumber
-from jaxhydro.waves.second_order import KINDS, Kind, elevation_spectrum
-
-MAX_JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does
-TOLERANCE = 1e-4  # of the record in the band, by root mean square, that first and second order together may miss
-MIN_CONTINUATION = 20.0  # of the shortest waves: how far records are continued at least
-MAX_LENGTHENING = 1.5  # times a record, that it may have when continued
-MAX_ROUNDS = 30  # of the iteration for the first-order part; 4 to 8 are usual, more in steep seas
-
-_second_order = eqx.filter_jit(elevation_spectrum)  # once per band and record length, not once per round
+from jaxhydro.waves.wave_errors import BandError, BreakingError
 
 
 def repeat_period(duration: float) -> float:
@@ -84,8 +73,9 @@ def spectrum_components(
         The components.
 
     Raises:
-        ValueError: A band, duration, option or spectrum is out of range. Or the sea breaks: a wave of height 4 sqrt(m0) and
-            the zero-crossing period would (Miche, as in `regular_wave`).
+        ValueError: A duration, option or spectrum is out of range.
+        BandError: The band is out of range or holds no harmonic.
+        BreakingError: A wave of height 4 sqrt(m0) and the zero-crossing period would break (Miche, as in `regular_wave`).
 
     References:
         Tucker, Challenor and Carter (1984), on random amplitudes; Jefferys (1987), on one direction per frequency.
@@ -115,197 +105,13 @@ def spectrum_components(
         sine = np.sqrt(directions.beta(0.5, spreading + 0.5, size=last))
         headings = headings + (2 * np.arcsin(sine) * np.sign(directions.random(size=last) - 0.5))[drawn]
     phase = phases.uniform(-math.pi, math.pi, size=last)[drawn]
-    return _components(np.sqrt(square), omega, environment, headings, phase, first)
+    return harmonic_components(np.sqrt(square), omega, environment, headings, phase, first)
 
 
-class Separation(NamedTuple):
-    """First-order waves of a record.
-
-    Attributes:
-        waves: The components.
-        mismatch: Root mean square difference from the record within the band, over that of the record (-).
-        rounds: Number of iterations.
-    """
-
-    waves: Components
-    mismatch: float
-    rounds: int
-
-
-def record_components(
-    times: Float[np.ndarray, " t"],
-    elevation: Float[np.ndarray, " t"],
-    environment: Environment,
-    *,
-    position: tuple[float, float] = (0.0, 0.0),
-    heading: float = 0.0,
-    low: float,
-    cutoff: float,
-    order: int = 2,
-    tolerance: float = TOLERANCE,
-    kinds: tuple[Kind, ...] = KINDS,
-    highest_difference: float | None = None,
-) -> Components:
-    """First-order waves of a measured elevation; an error where they do not reproduce it.
-
-    Args:
-        times: Sample times (s), (t,), even.
-        elevation: Elevation (m), (t,).
-        environment: Water depth and gravity.
-        position: Position of the gauge (m, earth axes).
-        heading: Direction that the waves travel to (rad).
-        low: Lowest frequency (Hz).
-        cutoff: Highest frequency (Hz).
-        order: 1 or 2, as in `separated_record`.
-        tolerance: Largest accepted mismatch (-).
-        kinds: As in `separated_record`.
-        highest_difference: As in `separated_record`.
-
-    Returns:
-        The components.
-
-    Raises:
-        ValueError: As `separated_record`, or the mismatch is above `tolerance`.
-    """
-    separation = separated_record(
-        times,
-        elevation,
-        environment,
-        position=position,
-        heading=heading,
-        low=low,
-        cutoff=cutoff,
-        order=order,
-        tolerance=tolerance,
-        kinds=kinds,
-        highest_difference=highest_difference,
-    )
-    if separation.mismatch > tolerance:
-        raise ValueError(
-            f"first and second order miss {separation.mismatch:.2%} of the record after {separation.rounds} rounds, expected "
-            f"below {tolerance:.2%}. Take a cutoff below {cutoff:g} Hz, a larger tolerance, or order 1"
-        )
-    return separation.waves
-
-
-def separated_record(
-    times: Float[np.ndarray, " t"],
-    elevation: Float[np.ndarray, " t"],
-    environment: Environment,
-    *,
-    position: tuple[float, float] = (0.0, 0.0),
-    heading: float = 0.0,
-    low: float,
-    cutoff: float,
-    order: int = 2,
-    tolerance: float = TOLERANCE,
-    kinds: tuple[Kind, ...] = KINDS,
-    highest_difference: float | None = None,
-) -> Separation:
-    """Long-crested first-order waves of an elevation recorded by a gauge.
-
-    They are the Fourier components of the record without its mean, from `low` to `cutoff`. Phases are those at the origin,
-    on the clock of `times`. There is no taper, which would lower the waves near the ends: at the gauge the components are
-    the band-passed record at every sample.
-
-    The period is the record's own length where its end meets its start. Otherwise it is about twenty of the shortest waves
-    longer, and the record is continued until there (`continued`), since it would ring near its ends.
-
-    With `order` 2, eta1 = eta - eta2(eta1) within the band is iterated, by half steps where it diverges. The best iterate is
-    returned. The bound set-down at low frequencies and the sums above `cutoff` follow; they are not matched.
-
-    Args:
-        times: Sample times (s), (t,), even.
-        elevation: Elevation (m), (t,).
-        environment: Water depth and gravity.
-        position: Position of the gauge (m, earth axes).
-        heading: Direction that the waves travel to (rad).
-        low: Lowest frequency (Hz).
-        cutoff: Highest frequency (Hz).
-        order: 1: the record is taken as linear. 2: bound second-order waves are separated.
-        tolerance: Mismatch (-) that the iteration should reach.
-        kinds: Pairs that bind: at sums or differences of their frequencies, or both.
-        highest_difference: Highest difference frequency (Hz) of bound waves; None: all.
-
-    Returns:
-        The waves, and their mismatch.
-
-    Raises:
-        ValueError: The times are uneven, the record has gaps or no waves in the band, or the band is out of range.
-    """
-    times, elevation = np.asarray(times, float), np.asarray(elevation, float)
-    step = sampling_interval(times)
-    if elevation.shape != times.shape:
-        raise ValueError(f"an elevation for each of {len(times)} times expected, found shape {elevation.shape}")
-    if not np.all(np.isfinite(elevation)):
-        raise ValueError(f"elevations are numbers, found {np.sum(~np.isfinite(elevation))} of {len(elevation)} that are not")
-    check(order=(order, (1, 2)))
-    for kind in kinds:
-        check(kinds=(kind, KINDS))
-    if cutoff > 0.5 / step:
-        raise ValueError(f"cutoff is at most half the sampling rate, {0.5 / step:g} Hz, found {cutoff:g} Hz")
-    level = elevation - elevation.mean()
-    if cutoff > 0:
-        length = fourier_length(len(times) + MIN_CONTINUATION / (cutoff * step))
-        if length <= MAX_LENGTHENING * len(times):
-            level = continued(level, step, low, cutoff, length)
-    count = len(level)
-    period = count * step
-    first, last = harmonics(low, cutoff, period)
-    last = min(last, (count - 1) // 2)  # at half the sampling rate a phase is not seen
-    band = slice(first, last + 1)
-    omega = 2 * math.pi / period * np.arange(first, last + 1)
-    measured = 2 / count * np.fft.rfft(level)[band] * np.exp(-1j * omega * times[0])
-    if not measured.any():
-        raise ValueError(f"the record has no waves from {low:g} to {cutoff:g} Hz")
-    k = np.asarray(wavenumber(jnp.asarray(omega), jnp.asarray(environment.depth), jnp.asarray(environment.gravity)))
-    to_origin = np.exp(1j * k * (position[0] * math.cos(heading) + position[1] * math.sin(heading)))
-
-    def waves(at_gauge: np.ndarray) -> Components:
-        a = at_gauge * to_origin
-        return _components(np.abs(a), omega, environment, np.full(omega.shape, float(heading)), np.angle(a), first)
-
-    if order == 1:
-        return Separation(waves(measured), 0.0, 0)
-    size = np.linalg.norm(measured)
-    best, trial, share, rounds = measured, measured, 1.0, 0
-    residual, least = measured, np.inf  # what the best trial misses, and its norm over the record's
-    while rounds < MAX_ROUNDS and least > 0.1 * tolerance and share > 1e-3:
-        rounds += 1
-        second = np.asarray(_second_order(waves(trial), environment, position, kinds, highest_difference))[band]
-        missed = measured - trial - second
-        mismatch = float(np.linalg.norm(missed) / size)
-        if mismatch < least:
-            best, residual, least = trial, missed, mismatch
-        else:
-            share *= 0.5  # gone too far: a shorter step from the best
-        trial = best + share * residual
-    return Separation(waves(best), least, rounds)
-
-
-def sampling_interval(times: Float[np.ndarray, " t"]) -> float:
-    """Sampling interval (s) of even, ascending times.
-
-    Args:
-        times: Times (s), (t,), four or more.
-
-    Raises:
-        ValueError: Times are uneven by more than 1 % of a step.
-    """
-    times = np.asarray(times, float)
-    if times.ndim != 1 or len(times) < 4 or not np.all(np.isfinite(times)):
-        raise ValueError(f"four or more times (s) expected, found an array of shape {times.shape} or with gaps")
-    step = (times[-1] - times[0]) / (len(times) - 1)
-    worst = int(np.argmax(np.abs(times - times[0] - step * np.arange(len(times)))))
-    off = abs(times[worst] - times[0] - step * worst)
-    if not (step > 0 and off <= MAX_JITTER * step):
-        raise ValueError(f"evenly sampled times expected, found {times[worst]:g} s {off:g} s off an even step of {step:g} s")
-    return float(step)
-
-
-def _components(
+def harmonic_components(
     amplitude: np.ndarray, omega: np.ndarray, environment: Environment, heading: np.ndarray, phase: np.ndarray, first: int
 ) -> Components:
+    """Components at successive harmonics from number `first` on: amplitude (m), frequency (rad/s), heading and phase (rad)."""
     a, w, towards, angle = (jnp.asarray(x) for x in (amplitude, omega, heading, phase))
     return components(a, w, environment, heading=towards, phase=angle, first=first)
 
@@ -319,18 +125,18 @@ def harmonics(low: float, cutoff: float, period: float) -> tuple[int, int]:
         period: Period (s).
 
     Raises:
-        ValueError: The band is out of range or holds no harmonic.
+        BandError: The band is out of range or holds no harmonic.
     """
     if not (0 <= low < cutoff and math.isfinite(cutoff)):
-        raise ValueError(f"a band has 0 <= low < cutoff, found {low} and {cutoff} Hz")
+        raise BandError(f"a band has 0 <= low < cutoff, found {low} and {cutoff} Hz")
     first, last = max(math.ceil(low * period - 1e-6), 1), math.floor(cutoff * period + 1e-6)
     if last < first:
-        raise ValueError(f"a band wider than one over the period, {period:g} s, expected, found {low:g} to {cutoff:g} Hz")
+        raise BandError(f"a band wider than one over the period, {period:g} s, expected, found {low:g} to {cutoff:g} Hz")
     return first, last
 
 
 def _below_breaking(omega: np.ndarray, energy: np.ndarray, environment: Environment) -> None:
-    """Raise ValueError where a wave of the significant height and the zero-crossing period would break."""
+    """Raise BreakingError where a wave of the significant height and the zero-crossing period would break."""
     m0 = energy.sum()
     crossing = math.sqrt((omega**2 * energy).sum() / m0)
     k = float(wavenumber(jnp.asarray(crossing), jnp.asarray(environment.depth), jnp.asarray(environment.gravity)))
@@ -338,4 +144,4 @@ def _below_breaking(omega: np.ndarray, energy: np.ndarray, environment: Environm
     height, period = 4 * math.sqrt(m0), 2 * math.pi / crossing
     if height > limit:
         actual = f"found a significant height of {height:.3g} m"
-        raise ValueError(f"waves of zero-crossing period {period:.3g} s break above {limit:.3g} m, {actual}")
+        raise BreakingError(f"waves of zero-crossing period {period:.3g} s break above {limit:.3g} m, {actual}")

@@ -16,17 +16,11 @@ from jaxhydro.waves.directional_transfer import AnyTransfer
 from jaxhydro.waves.excitation import AnyExcitation
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.preparation import Preparation
-from jaxhydro.waves.sea import (
-    DRIFT_REFERENCE_FREQUENCY,
-    AbstractSea,
-    Stretching,
-    WaveSea,
-    direction,
-    growth,
-)
+from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY, AbstractSea, Stretching, direction, growth
 from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum
 from jaxhydro.waves.support_sea import Clock, SupportSea
 from jaxhydro.waves.supports import Box, supports
+from jaxhydro.waves.wave_sea import WaveSea
 
 Acting = Literal["everywhere", "at the origin", "nowhere"]
 _elevation = eqx.filter_jit(elevation_spectrum)

@@ -8,11 +8,12 @@ import numpy as np
 from jaxhydro.environment import Environment
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.components import PlaneWaves, components
-from jaxhydro.waves.sea import Stretching, WaveSea
+from jaxhydro.waves.sea import Stretching
 from jaxhydro.waves.sea_limits import MICHE
 from jaxhydro.waves.second_order import bound_waves
 from jaxhydro.waves.stream_function import SteepWave, StreamFunction, stream_function
 from jaxhydro.waves.wave_errors import BreakingError, StretchingError
+from jaxhydro.waves.wave_sea import WaveSea
 
 MAX_LENGTHENING = 1.2  # length of the steepest wave over that of linear theory, of one period: 1.193 in deep water
 MAX_LAST_HARMONIC = 1e-3  # of the first harmonic of the elevation, that the last one of a whole series has at most

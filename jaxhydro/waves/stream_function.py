@@ -9,8 +9,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.waves.sea import WaveSea, stretched
+from jaxhydro.waves.sea import stretched
 from jaxhydro.waves.wave_errors import NoWaveError
+from jaxhydro.waves.wave_sea import WaveSea
 
 HINT = "stream-function waves need raschii: pip install 'jaxhydro[waves]'"
 

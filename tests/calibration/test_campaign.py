@@ -18,7 +18,8 @@ from scipy.io import savemat
 from calibration.campaign.checks import check_records
 from calibration.campaign.load_campaign import load_campaign
 from calibration.campaign.manifest import read_manifest
-from calibration.campaign.records import load_records, read_series
+from calibration.campaign.records import load_records
+from calibration.campaign.series import read_series
 from calibration.campaign.signals import noise_level
 from jaxhydro.errors import InputError
 from jaxhydro.interop.data_files import read_table
@@ -461,7 +462,7 @@ def test_one_column_for_one_test_and_none_for_another(tmp_path):
 
 
 def test_a_numeric_id_is_a_name_and_each_file_is_read_once(tmp_path, monkeypatch):
-    from calibration.campaign import records as module
+    from calibration.campaign import series as module
 
     document = manifest()
     document["tests"] = [

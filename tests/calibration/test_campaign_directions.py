@@ -14,10 +14,11 @@ from calibration.campaign.load_campaign import load_campaign
 from calibration.campaign.stated_sea import Sea
 from calibration.campaign.wave_directions import stated_directions
 from calibration.fitting.sea_fit import calibrate_in_waves
-from calibration.residuals.measured_seas import compare, seas_of
+from calibration.residuals.measured_seas import compare
+from calibration.residuals.run_seas import seas_of
 from calibration.residuals.wave_options import Options
 from jaxhydro.errors import InputError, validate
-from jaxhydro.waves.irregular import record_components
+from jaxhydro.waves.recorded_waves import record_components
 from jaxhydro.waves.spreading import circular_moments
 
 WATER = jh.Environment(1025.0, 60.0, 9.81)

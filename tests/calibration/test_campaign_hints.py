@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from calibration import load_campaign
-from calibration.campaign.campaign_hints import motion_hints
 from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.motion_hints import motion_hints
 from calibration.campaign.plausible import CampaignFinding, check_plausible
 
 TURN, SCALE = 180 / math.pi, 50.0

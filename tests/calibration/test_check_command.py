@@ -15,7 +15,7 @@ from calibration.report.check_tables import PeriodComparison, compare_periods, d
 from jaxhydro.cli import app as cli
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.errors import InputError
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 from jaxhydro.plots.hull_drawing import hull_figure, outline
 from jaxhydro.plots.style import style
 

@@ -11,14 +11,8 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 import jaxhydro as jh
-from calibration.decay_analysis.linear_quadratic import (
-    Classical,
-    Decrements,
-    classical,
-    decrements,
-    equivalent_damping,
-    linear_quadratic,
-)
+from calibration.decay_analysis.decrements import Decrements, decrements
+from calibration.decay_analysis.linear_quadratic import Classical, classical, equivalent_damping, linear_quadratic
 from calibration.decay_analysis.model_damping import drag_coefficient, model_damping, motion_shape
 from calibration.decay_analysis.period_change import unexplained_period_change
 from calibration.fitting.fit_conclusion import period_remarks

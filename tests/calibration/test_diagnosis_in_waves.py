@@ -17,7 +17,7 @@ import jaxhydro as jh
 from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
-from calibration.commands.calibrate_command import simulate_campaign
+from calibration.commands.simulate_campaign_command import simulate_campaign
 from calibration.discovery.channel_signs import with_signs_reversed
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis_conclusion import conclude

@@ -24,8 +24,9 @@ from calibration.report import diagnosis_words as words
 from calibration.report.write_report import write_report
 from calibration.results.calibration_file import Parameter
 from calibration.results.diagnosis_file import read_diagnosis
+from calibration.results.diagnosis_motions import paired
 from calibration.results.write_calibration import NotFinite
-from calibration.results.write_diagnosis import document, paired, write_diagnosis
+from calibration.results.write_diagnosis import document, write_diagnosis
 from jaxhydro.errors import InputError
 from jaxhydro.units import for_people
 

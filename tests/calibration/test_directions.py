@@ -11,12 +11,12 @@ import pytest
 from ruamel.yaml import YAML
 
 import jaxhydro as jh
-from calibration.campaign.manifest import Test
+from calibration.campaign.manifest_sections import Test
 from calibration.campaign.records import Record
 from calibration.fitting.decay_fit import fit_of_decays, run_fit, set_up_decays
 from calibration.fitting.decay_part import series_of
 from calibration.fitting.fit_conclusion import identifiability_of
-from calibration.identifiability.directions import MAX_REPORTED_DIRECTIONS, Identifiability, identifiability
+from calibration.identifiability.findings import MAX_REPORTED_DIRECTIONS, Identifiability, identifiability
 from calibration.identifiability.information import IDENTIFIABLE_DEVIATION, collinearity, shared_information, varimax
 from calibration.identifiability.standard_deviations import sandwich_covariance
 from calibration.identifiability.statements import Parameters

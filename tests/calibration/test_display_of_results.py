@@ -22,7 +22,7 @@ from calibration.results.tests_dataset import dataset
 from calibration.results.write_calibration import document
 from calibration.results.write_diagnosis import document as document_of_diagnosis
 from calibration.results.write_diagnosis import write_diagnosis
-from calibration.uncertainty.bootstrap import Bootstrap
+from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.nuts import Samples
 from jaxhydro.choices import UnknownName
 

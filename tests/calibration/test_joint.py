@@ -16,7 +16,7 @@ from calibration import load_campaign
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.parameters.space import parameter_space
 from calibration.residuals.abstract_residual import cauchy_residual, parameters_only
-from calibration.residuals.measured_seas import seas_of, with_diffraction
+from calibration.residuals.run_seas import seas_of, with_diffraction
 from calibration.residuals.run_segments import run_segments, simulate_segments
 from calibration.residuals.static import natural_period, set_up_offsets, set_up_periods
 from jaxhydro.dynamics.statics import held_at

@@ -17,7 +17,7 @@ from calibration.fitting.sea_part import SeaPart
 from calibration.parameters.space import VAGUE_DEVIATION, ParameterSpace, parameter_space
 from calibration.residuals.abstract_residual import AbstractGroupedResidual, AbstractResidual, Unknowns, parameters_only
 from calibration.residuals.decays import first_guess
-from calibration.residuals.measured_seas import seas_of, with_diffraction
+from calibration.residuals.run_seas import seas_of, with_diffraction
 from calibration.residuals.seas import set_up_waves
 from calibration.residuals.shooting import set_up_blocks
 from calibration.residuals.static import set_up_offsets, set_up_periods

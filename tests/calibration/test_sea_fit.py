@@ -13,9 +13,11 @@ from test_seas import made  # noqa: F401  (a fixture: a run of the NumPy model)
 from calibration import Interrupted, calibrate, calibrate_in_waves, load_campaign
 from calibration.parameters.space import parameter_space
 from calibration.residuals.abstract_residual import parameters_only
-from calibration.residuals.measured_seas import compare, seas_of, with_diffraction
+from calibration.residuals.band_energies import CELLS_PER_BAND, MIN_ENERGY_SHARE, energies_of, joined_bands
+from calibration.residuals.measured_seas import compare
+from calibration.residuals.run_seas import seas_of, with_diffraction
 from calibration.residuals.sea_errors import in_bands
-from calibration.residuals.seas import CELLS_PER_BAND, MIN_ENERGY_SHARE, energies_of, joined_bands, set_up_waves
+from calibration.residuals.seas import set_up_waves
 from calibration.residuals.wave_options import Options
 from calibration.results.write_calibration import document, write_calibration
 from jaxhydro.analysis.spectral import band_integral, band_weights, power_spectrum

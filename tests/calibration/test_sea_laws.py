@@ -19,7 +19,8 @@ from calibration.fitting.law_parameters import (
 )
 from calibration.fitting.progress import Interrupted, Progress
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
-from calibration.residuals.measured_seas import compare, seas_of, with_diffraction
+from calibration.residuals.measured_seas import compare
+from calibration.residuals.run_seas import seas_of, with_diffraction
 from calibration.residuals.run_segments import run_segments, sea_state, simulate_segments
 from calibration.residuals.wave_options import Options
 from calibration.results.applied_calibration import apply_calibration

@@ -13,9 +13,9 @@ from test_outputs import follows
 from benchmarks.reference_waves import WaveModel, Waves, march
 from calibration.campaign.load_campaign import load_campaign
 from calibration.campaign.runs import Run, on_even_clock, runs
-from calibration.commands.calibrate_command import simulate_campaign
+from calibration.commands.simulate_campaign_command import simulate_campaign
 from calibration.fitting.decay_fit import calibrate
-from calibration.residuals.measured_seas import MAX_MISMATCH, sea_of
+from calibration.residuals.run_seas import MAX_MISMATCH, sea_of
 from calibration.residuals.wave_options import Options
 from calibration.results.applied_calibration import apply_calibration
 from jaxhydro.analysis.sea_statistics import bands_of

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from calibration import load_campaign
-from calibration.campaign.manifest import Recording
+from calibration.campaign.manifest_sections import Recording
 from calibration.campaign.runs import Run
 from calibration.campaign.second_order_hint import second_order_hint
-from calibration.residuals.measured_seas import sea_of, seas_of
+from calibration.residuals.run_seas import sea_of, seas_of
 from calibration.residuals.wave_options import Options, options_of
 from jaxhydro.environment import Environment
 from jaxhydro.errors import InputError
@@ -69,7 +69,7 @@ def test_records_are_looked_at_where_nothing_is_stated(stated, monkeypatch):
     """The hint is with the first run's notes."""
     looked = []
     monkeypatch.setattr(
-        "calibration.residuals.measured_seas.second_order_hint", lambda runs, band: looked.append(band) or ("a hint",)
+        "calibration.residuals.run_seas.second_order_hint", lambda runs, band: looked.append(band) or ("a hint",)
     )
     campaign = with_records(COMPLETE, **stated)
     ((_, made),) = seas_of(campaign, campaign.model.environment, options_of(campaign))

@@ -17,7 +17,7 @@ from calibration.fitting.normal_equations import LeastSquares, normal_equations
 from calibration.identifiability.standard_deviations import correlated_samples
 from calibration.parameters.space import parameter_space
 from calibration.residuals.abstract_residual import Unknowns
-from calibration.residuals.measured_seas import seas_of, with_diffraction
+from calibration.residuals.run_seas import seas_of, with_diffraction
 from calibration.residuals.run_segments import run_segments, simulate_segments
 from calibration.residuals.seas import set_up_waves
 from calibration.residuals.shooting import simulate_blocks

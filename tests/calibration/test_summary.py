@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from calibration.campaign.checks import Finding
+from calibration.campaign.finding import Finding
 from calibration.campaign.grouped_findings import group_findings
 from calibration.formatting import counted, percent_span, readable_unit
 from calibration.report import tables

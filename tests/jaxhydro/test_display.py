@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 import jaxhydro as jh
 from jaxhydro.dynamics.natural_modes import Modes
 from jaxhydro.hull.outline import element_outlines
-from jaxhydro.platform.build import members_of
+from jaxhydro.platform.members_build import members_of
 from jaxhydro.plots.hull_drawing import POINTS, outline
 from jaxhydro.waves.components import components
 

@@ -20,7 +20,7 @@ from jaxhydro.dynamics.statics import linearised
 from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_drift import COLUMNS, read_transfer
 from jaxhydro.loads import DriftTransfer
-from jaxhydro.sweep.execute import _platform_text
+from jaxhydro.sweep.prepared_sweep import _platform_text
 from jaxhydro.waves.quadratic_transfer import Transfer
 from jaxhydro.waves.support_sea import Clock
 

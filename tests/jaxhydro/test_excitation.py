@@ -26,7 +26,7 @@ from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_excitation import read_excitation
 from jaxhydro.loads import ComputedExcitation, EndInertia, StripInertia
 from jaxhydro.sweep import load_sweep
-from jaxhydro.sweep.execute import _platform_text, prepared
+from jaxhydro.sweep.prepared_sweep import _platform_text, prepared
 from jaxhydro.water import WaveGaugePosition
 from jaxhydro.waves import Clock
 from jaxhydro.waves.excitation import Excitation

@@ -16,13 +16,8 @@ from jaxhydro.environment import Environment
 from jaxhydro.waves import spectra
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.dispersion import wavenumber
-from jaxhydro.waves.irregular import (
-    record_components,
-    repeat_period,
-    sampling_interval,
-    separated_record,
-    spectrum_components,
-)
+from jaxhydro.waves.irregular import repeat_period, spectrum_components
+from jaxhydro.waves.recorded_waves import record_components, sampling_interval, separated_record
 from jaxhydro.waves.second_order import elevation_spectrum
 
 WATER = Environment(1025.0, 200.0, 9.81)

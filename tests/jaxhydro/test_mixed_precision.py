@@ -12,7 +12,7 @@ import jaxhydro as jh
 from jaxhydro.integrators.mixed_precision import in_float32
 from jaxhydro.sweep import load_sweep
 from jaxhydro.sweep.cases import Plan
-from jaxhydro.sweep.execute import prepared
+from jaxhydro.sweep.prepared_sweep import prepared
 
 STATISTICS = {"mean": np.mean, "standard deviation": np.std, "largest": np.max, "least": np.min}
 

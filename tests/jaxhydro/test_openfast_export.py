@@ -11,16 +11,18 @@ from openfast_io.FAST_reader import InputReader_OpenFAST
 
 from jaxhydro.cli.export_command import source_of
 from jaxhydro.dynamics.model import Model
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 from jaxhydro.interop.conversion import Conversion, Treatment
 from jaxhydro.interop.export_source import ExportedModel
 from jaxhydro.interop.openfast.export_deck import export_deck
 from jaxhydro.interop.openfast_deck import read_openfast_deck
 from jaxhydro.loads import Buoyancy, EndInertia, QuadraticDamping
 from jaxhydro.loads.static_force import StaticForce
-from jaxhydro.platform.build import build, members_of
+from jaxhydro.platform.build import build
 from jaxhydro.platform.catenary_schema import Catenary
-from jaxhydro.platform.schema import Platform, StiffnessMatrix, load_platform
+from jaxhydro.platform.members_build import members_of
+from jaxhydro.platform.mooring_schema import StiffnessMatrix
+from jaxhydro.platform.schema import Platform, load_platform
 from jaxhydro.rotations import rotation
 
 BUILT_IN = ("volturnus-s", "oc3-hywind", "oc4-deepcwind", "iti-barge")

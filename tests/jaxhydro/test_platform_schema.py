@@ -9,16 +9,8 @@ from ruamel.yaml import YAML
 
 from jaxhydro.errors import MAX_PRINTED_PROBLEMS, InputError, read_yaml, validate
 from jaxhydro.platform.catenary_schema import Catenary
-from jaxhydro.platform.schema import (
-    Line,
-    LinearSprings,
-    Member,
-    Platform,
-    RigidBody,
-    StiffnessMatrix,
-    builtin_platforms,
-    load_platform,
-)
+from jaxhydro.platform.mooring_schema import Line, LinearSprings, StiffnessMatrix
+from jaxhydro.platform.schema import Member, Platform, RigidBody, builtin_platforms, load_platform
 
 SHARED = Path(__file__).parents[2].parent / "shared"
 GOOD = """

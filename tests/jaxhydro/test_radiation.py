@@ -29,7 +29,7 @@ from jaxhydro.interop.retardation import Damping, Realisation, realise
 from jaxhydro.interop.wamit_radiation import read_wamit
 from jaxhydro.loads import ComputedRadiation, RadiationMemory, Stiffness
 from jaxhydro.platform.schema import load_platform
-from jaxhydro.sweep.execute import _platform_text
+from jaxhydro.sweep.prepared_sweep import _platform_text
 
 REFERENCE = Path(__file__).resolve().parents[3] / "shared" / "reference"
 WAMIT = REFERENCE / "iea15-umaine" / "HydroData" / "IEA-15-240-RWT-UMaineSemi.1"

@@ -9,15 +9,17 @@ import pytest
 import yaml
 
 from jaxhydro.cli.export_command import source_of
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 from jaxhydro.interop.conversion import Treatment
 from jaxhydro.interop.export_source import ExportedModel
 from jaxhydro.interop.raft_design import read_raft_design
 from jaxhydro.interop.raft_export_design import DESIGN, export_design
 from jaxhydro.loads import Buoyancy
-from jaxhydro.platform.build import build, members_of
+from jaxhydro.platform.build import build
 from jaxhydro.platform.catenary_schema import Catenary
-from jaxhydro.platform.schema import Hydrostatics, Platform, load_platform
+from jaxhydro.platform.computed_tables_schema import Hydrostatics
+from jaxhydro.platform.members_build import members_of
+from jaxhydro.platform.schema import Platform, load_platform
 
 SAME = 1e-9
 CHAIN = {"axial_stiffness": 3.27e9, "mass_per_length": 685.0, "diameter": 0.333}

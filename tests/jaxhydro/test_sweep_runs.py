@@ -27,9 +27,11 @@ from jaxhydro.cli import app as cli
 from jaxhydro.sweep import cluster, lifetime_sensitivity, load_sweep, run_sweep
 from jaxhydro.sweep.batch import run_outcome, run_outcomes, setup_in
 from jaxhydro.sweep.cases import Plan
-from jaxhydro.sweep.execute import opened, prepared
+from jaxhydro.sweep.execute import opened
 from jaxhydro.sweep.local import Worker
-from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store, locked_folder
+from jaxhydro.sweep.prepared_sweep import prepared
+from jaxhydro.sweep.store import INPUTS, RESULTS, Store, locked_folder
+from jaxhydro.sweep.store_layout import DONE, FAILED
 from jaxhydro.sweep.sweep_remarks import shares_in_band
 from jaxhydro.waves.sea_state import state_of
 
@@ -226,7 +228,7 @@ def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatc
     monkeypatch.setattr("jaxhydro.cli.sweep_command.results_of", stop)
     assert f"stopped; what is done is in {whole / RESULTS}" in command("sweep", file, "--out", whole, status=130)
     before = signal.getsignal(signal.SIGINT)
-    monkeypatch.setattr("jaxhydro.sweep.execute.impossible", swallowed)
+    monkeypatch.setattr("jaxhydro.sweep.prepared_sweep.impossible", swallowed)
     assert "stopped; nothing was written" in command("sweep", file, "--out", tmp_path / "o", status=130)
     monkeypatch.setattr("jaxhydro.cli.sweep_command.load_sweep", stop)
     assert "stopped; nothing was written" in command("sweep", file, "--out", tmp_path / "o", status=130)

@@ -15,7 +15,7 @@ from jaxhydro.cli import app as cli
 from jaxhydro.cli.simulate_command import told_of_bed
 from jaxhydro.dynamics.table_ranges import TableRange, outside_tables, table_ranges
 from jaxhydro.sweep import load_sweep
-from jaxhydro.sweep.execute import prepared
+from jaxhydro.sweep.prepared_sweep import prepared
 from jaxhydro.waves.excitation import Excitation
 
 PLATFORM = (Path(jh.__path__[0]) / "platforms" / "volturnus-s-focal.yaml").read_text(encoding="utf-8")

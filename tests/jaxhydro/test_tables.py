@@ -23,7 +23,7 @@ from jaxhydro.interop.wamit_radiation import read_wamit
 from jaxhydro.loads import Buoyancy
 from jaxhydro.platform.computed_hydrostatics import hydrostatic_stiffness
 from jaxhydro.platform.table_checks import LongWaves, asymmetry, excitation_column
-from jaxhydro.sweep.execute import _platform_text
+from jaxhydro.sweep.prepared_sweep import _platform_text
 from jaxhydro.waves.dispersion import wavenumber
 
 CYLINDER = Path(__file__).parents[1] / "data" / "capytaine-cylinder.nc"  # by Capytaine 3.0: radius 1 m, draught 3 m, 50 m deep

@@ -40,7 +40,7 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     "yaml": set(),
     "pandas": {
         *("jaxhydro.display", "calibration.display"),
-        *("jaxhydro.interop", "calibration.campaign.records", "calibration.campaign.signals"),
+        *("jaxhydro.interop", "calibration.campaign.series", "calibration.campaign.signals"),
         *("calibration.new_campaign.column_guesses", "calibration.new_campaign.draft_of_files"),
     },
     "xarray": {

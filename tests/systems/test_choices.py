@@ -26,7 +26,7 @@ from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
 from jaxhydro.parameters import Parameter
 from jaxhydro.platform.convergence import with_elements
 from jaxhydro.waves.components import PlaneWaves
-from jaxhydro.waves.irregular import separated_record
+from jaxhydro.waves.recorded_waves import separated_record
 from jaxhydro.waves.sea import Stretching
 from jaxhydro.waves.second_order import bound_waves, elevation_spectrum, transfer
 

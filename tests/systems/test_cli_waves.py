@@ -12,7 +12,7 @@ from fake_calibration import DEMO
 from test_cli import cache, run  # noqa: F401
 
 import jaxhydro as jh
-from calibration.commands import calibrate_command as of_campaigns
+from calibration.commands import simulate_campaign_command as of_campaigns
 from jaxhydro.analysis.sea_statistics import bands_of, summary, tables
 from jaxhydro.cli import option_choices, sea_command, sea_options
 from jaxhydro.cli.exit_status import NOT_CONVERGED

@@ -15,6 +15,7 @@ from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.interop.openfast_deck import read_openfast_deck
 from jaxhydro.platform.catenary_build import catenary_lines
 from jaxhydro.platform.catenary_schema import Catenary
+from jaxhydro.platform.mooring_schema import StiffnessMatrix
 from jaxhydro.platform.schema import Platform, load_platform
 
 DECK = Path(__file__).resolve().parents[1] / "fixtures" / "openfast_deck"
@@ -70,7 +71,7 @@ def test_the_public_deck_of_the_15_mw_platform() -> None:
     """The catenaries' pull is that which balances the platform that is made by hand."""
     conversion = read_openfast_deck(IEA15)
     platform, mine = Platform.model_validate(conversion.platform), load_platform("volturnus-s")
-    assert isinstance(platform.mooring, Catenary) and isinstance(mine.mooring, jh.platform.schema.StiffnessMatrix)
+    assert isinstance(platform.mooring, Catenary) and isinstance(mine.mooring, StiffnessMatrix)
     tension, direction = catenary_lines(platform.mooring, platform.water).tension(jnp.zeros(6), jnp.eye(3))
     assert float(tension @ direction[2]) == pytest.approx(mine.mooring.preload[2], rel=5e-3)
     assert np.asarray(tension) == pytest.approx(2437e3, rel=5e-3)  # N, NREL/TP-5000-76773

@@ -16,14 +16,15 @@ from test_diagnosis_in_waves import PLATFORM, excited, write_table
 
 import jaxhydro as jh
 from calibration import load_campaign
-from calibration.commands.calibrate_command import simulate_campaign
+from calibration.commands.simulate_campaign_command import simulate_campaign
 from calibration.discovery.diagnosis_fits import test_fits_at as fitted_tests
 from calibration.discovery.effects.candidates import with_effects
 from calibration.discovery.linearisations import Point
 from calibration.discovery.set_up import set_up_study
 from calibration.parameters.space import parameter_space
 from calibration.residuals.abstract_residual import Unknowns
-from calibration.residuals.measured_seas import compare, seas_of, with_diffraction
+from calibration.residuals.measured_seas import compare
+from calibration.residuals.run_seas import seas_of, with_diffraction
 from calibration.residuals.seas import residuals_and_reach, set_up_waves
 from calibration.residuals.shooting import set_up_blocks, simulate_blocks
 from calibration.residuals.static import set_up_offsets

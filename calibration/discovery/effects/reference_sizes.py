@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.discovery.effects.catalogue import REFERENCE_LENGTH
 from calibration.discovery.effects.catalogue_builder import NoticeableScales

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from jaxhydro.hull.strips import COLUMN_SLOPE
+from jaxhydro.hull.member import COLUMN_SLOPE
 from jaxhydro.interop.conversion import Treatment
 from jaxhydro.interop.openfast.hull_tables import HydroDynMember, Joint
 from jaxhydro.interop.openfast.member_notes import MemberNotes

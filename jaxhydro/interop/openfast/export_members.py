@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from jaxhydro.hull.strips import COLUMN_SPACING, PONTOON_SPACING
+from jaxhydro.hull.member import COLUMN_SPACING, PONTOON_SPACING
 from jaxhydro.interop.conversion import Treatment
 from jaxhydro.interop.export_source import ExportSource
 from jaxhydro.interop.openfast.export_pieces import Piece, PieceJoint, joints_of, pieces_of

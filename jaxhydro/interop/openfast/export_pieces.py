@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Float
 
-from jaxhydro.hull.strips import Member
+from jaxhydro.hull.member import Member
 
 STEP = 1e-5  # of a member's length: stations that are closer are a step in size
 MEETING = 1e-3  # of the larger radius: columns whose ends are closer meet (`hull.ends`)
