@@ -91,7 +91,7 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
         Wavenumbers and weights.
 
     Raises:
-        ValueError: More than `MAX_SUPPORTS` supports would be needed: a box of many wavelengths.
+        ShortWavesError: More than `MAX_SUPPORTS` supports would be needed: a box of many wavelengths.
     """
     highest = max(free, bound)
     count = math.ceil((0.5 * highest * box.half + 8) / 4) * 4

@@ -11,8 +11,10 @@ from numpy.testing import assert_allclose
 
 import jaxhydro as jh
 from jaxhydro.dynamics.integrate import clock, integrate
+from jaxhydro.dynamics.irregular_simulation import CarriedAwayError
 from jaxhydro.waves import Clock, Cylinders
 from jaxhydro.waves.supports import Box, cosine_sine, supports, weights
+from jaxhydro.waves.wave_errors import ShortWavesError
 
 WATER = jh.Environment(1025.0, 200.0, 9.81)
 HULL = np.array([[-51.75, 0, -20], [25.9, 44.8, -20], [25.9, -44.8, -20], [0, 0, 15.0]]).T
@@ -51,7 +53,7 @@ def test_weights_reproduce_every_wave() -> None:
 
 
 def test_a_box_of_many_wavelengths_is_refused() -> None:
-    with pytest.raises(ValueError, match="cut the sea off at a lower frequency"):
+    with pytest.raises(ShortWavesError, match="cut the sea off at a lower frequency"):
         supports(Box(600.0, -24.0, 200.0), 1.0)
 
 
@@ -208,3 +210,11 @@ def test_a_platform_that_drifts_gets_a_larger_box(model: jh.Model) -> None:
     found = jh.simulate(model, times, waves, position={"surge": 40.0}, method="rk4", step=0.5).position
     exact = jh.simulate(model, times, waves.direct(), position={"surge": 40.0}, method="rk4", step=0.5).position
     assert_allclose(found, exact, atol=1e-3)
+
+
+@pytest.mark.slow
+def test_a_platform_that_drifts_without_end_is_told(model: jh.Model) -> None:
+    """A kilometre off, further than the boxes that are tried."""
+    times = np.arange(0.0, 30.1, 0.5)
+    with pytest.raises(CarriedAwayError, match=r"carried 1\.\d+e\+03 m along the waves"):
+        jh.simulate(model, times, sea(order=1, duration=60.0), position={"surge": 1000.0}, method="rk4", step=0.5)

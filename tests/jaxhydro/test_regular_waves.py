@@ -16,6 +16,7 @@ from jaxhydro.waves import regular_waves as module
 from jaxhydro.waves.components import components
 from jaxhydro.waves.regular_waves import regular_wave, series_remarks
 from jaxhydro.waves.stream_function import HINT, SteepWave, StreamFunction, stream_function
+from jaxhydro.waves.wave_errors import BreakingError
 
 RASCHII = json.loads((Path(__file__).parents[1] / "data" / "stream-function-raschii.json").read_text())["waves"]
 HEIGHT, PERIOD, WATER = 2.5, 9.0, jh.Environment(1025.0, 18.0, 9.81)
@@ -143,9 +144,9 @@ def test_a_series_cut_short_is_remarked(coefficients) -> None:
 
 
 def test_what_cannot_be_is_told() -> None:
-    with pytest.raises(ValueError, match="breaks above a height of"):
+    with pytest.raises(BreakingError, match="breaks above a height of"):
         regular_wave(20.0, 8.0, WATER, order=2)
-    with pytest.raises(ValueError, match="breaks above a height of"):
+    with pytest.raises(BreakingError, match="breaks above a height of"):
         regular_wave(20.0, 8.0, WATER, order=7)
     with pytest.raises(ValueError, match="order of a regular wave is 1 or more, found 0"):
         regular_wave(2.0, 8.0, WATER, order=0)
