@@ -10,11 +10,9 @@ from jaxtyping import Array, Float, Int
 
 from jaxhydro.analysis.spectral import SEGMENT, band_weights
 
-CELLS_PER_BAND, MIN_CELL_CYCLES, MIN_ENERGY_SHARE = (
-    8,
-    10.0,
-    0.01,
-)  # of a spectrum: cells of a band, their least width times the record, least energy
+CELLS_PER_BAND = 8  # at most
+MIN_CELL_CYCLES = 10.0  # width of a cell times the length of the record
+MIN_ENERGY_SHARE = 0.01  # of the energy of the largest cell
 
 
 class BandEnergies(eqx.Module):

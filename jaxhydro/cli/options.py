@@ -163,9 +163,8 @@ def check_platform(name: str, or_campaign: bool = False) -> None:
     builtin = builtin_platforms()
     if name.lower() in builtin or is_there(Path(name)) or Path(name).suffix in YAML:
         return
-    expected = f"a platform file or a built-in platform ({', '.join(builtin)})"
-    if or_campaign:
-        expected = f"a platform file, a built-in platform ({', '.join(builtin)}), or a campaign's folder"
+    file, known = "a platform file", f"a built-in platform ({', '.join(builtin)})"
+    expected = f"{file}, {known}, or a campaign's folder" if or_campaign else f"{file} or {known}"
     raise InputError(name, [Problem("", expected, "no such file or folder", suggest(name, builtin) or suggest_path(name))])
 
 
