@@ -1,5 +1,6 @@
 """Command-line application: its commands, and how mistakes and stops end them."""
 
+import gc
 from typing import Annotated, Any
 
 import typer
@@ -12,6 +13,7 @@ from jaxhydro.errors import InputError
 from jaxhydro.interrupts import asked_to_stop, ended_by_signals
 
 STOPPED_MESSAGE = "stopped; nothing was written"
+GARBAGE_THRESHOLDS = 100_000, 20, 100  # tracing makes millions of objects that last; Python would search them again and again
 
 
 class Guarded(TyperGroup):
@@ -56,6 +58,7 @@ app = typer.Typer(
 
 def main() -> None:
     """Run the command line."""
+    gc.set_threshold(*GARBAGE_THRESHOLDS)
     app(prog_name="jaxhydro")  # also of `python -m jaxhydro`
 
 

@@ -29,10 +29,10 @@ from calibration.formatting import listed
 
 MAX_ROUNDS = 6  # linearisations along candidates
 STEP_ITERATIONS = 15  # iterations of a fit with the slopes at hand
-USUAL_ROUNDS = 3  # for progress
+ROUND_SHARE = 0.3  # of the rounds' progress that is left: what a round adds
 FREE_ROUNDS = 3  # rounds after which what most sets have stays
 WHOLE_ROUNDS = 2  # rounds along all candidates; later ones are along those that help, or are in probable sets
-BEGIN, END = 0.25, 0.65  # progress of the rounds
+BEGIN, END = 0.2, 0.55  # progress of the rounds
 
 
 class JointSearch(Search):
@@ -53,7 +53,7 @@ class JointSearch(Search):
 
     def share(self, number: float) -> float:
         """Progress after so many rounds."""
-        return BEGIN + (END - BEGIN) * min(number / USUAL_ROUNDS, 1.0)
+        return BEGIN + (END - BEGIN) * (1 - (1 - ROUND_SHARE) ** number)
 
     def select(self, state: FitState, number: int, required: frozenset[str]) -> Subset:
         """Linearise a state along all candidates, and select.
