@@ -1,4 +1,4 @@
-"""Start-up of commands: programs compiled and seconds of CPU, on an empty compilation cache and on a full one.
+"""Start-up of commands and of the README's Python: programs and seconds, on an empty compilation cache and on a full one.
 
     python -m benchmarks.bench_start [--before FOLDER] [--rounds 3] [--out FILE]
 
@@ -9,11 +9,13 @@ import argparse
 import datetime
 import json
 import os
+import re
 import shutil
 import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 from typing import Any
 
@@ -28,19 +30,39 @@ COMMANDS = {
     "the same without figures": [
         *("simulate", "volturnus-s", "--hs", "3", "--tp", "9", "--duration", "1200", "--out", "{out}", "--no-figures")
     ],
+    "check of the built-in campaign": ["check", "volturnus-s-decays", "--out", "{out}"],
+    "the README's Python up to its decay": ["{decay}"],
+    "the README's whole Python": ["{example}"],
+    "demo: nine decays calibrated": ["demo", "--out", "{out}"],
 }
 SKIPPED_BEFORE = ("statics of VolturnUS-S",)  # a command that older sources lack
-HEADS = ("command", "cache", "programs", "tracing and lowering (s)", "compiling (s)", "CPU time (s)")
+HEADS = ("command", "cache", "programs", "tracing and lowering (s)", "compiling (s)", "CPU time (s)", "wall time (s)")
+PYTHON_BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+AFTER_DECAY = "result = calibrate("  # the README's line that follows its decay
+
+
+def readme_examples() -> dict[str, str]:
+    """Python of the README, up to its decay and whole."""
+    block = PYTHON_BLOCK.search((ROOT / "README.md").read_text(encoding="utf-8"))
+    if block is None or AFTER_DECAY not in block[1]:
+        raise ValueError(f"README.md has no Python block with {AFTER_DECAY!r}")
+    return {"decay": block[1].partition(AFTER_DECAY)[0], "example": block[1]}
 
 
 def measured(words: list[str], sources: Path, cache: Path) -> dict[str, Any]:
     """Counts and seconds of one run of a command, by `start_probe`."""
     with tempfile.TemporaryDirectory() as folder:
-        given = [word.replace("{out}", str(Path(folder) / "out")) for word in words]
+        files = {"out": Path(folder) / "out"}
+        for name, code in readme_examples().items():
+            files[name] = Path(folder) / f"{name}.py"
+            files[name].write_text(code, encoding="utf-8")
+        given = [word.format(**files) for word in words]
         environment = os.environ | {"PYTHONPATH": str(sources), "JAX_COMPILATION_CACHE_DIR": str(cache)}
         command = [sys.executable, str(ROOT / "benchmarks" / "start_probe.py"), *given]
+        begun = time.monotonic()
         done = subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True, check=True)
-    return json.loads(done.stdout.strip().splitlines()[-1])
+        wall = time.monotonic() - begun
+    return json.loads(done.stdout.strip().splitlines()[-1]) | {"wall_s": wall}
 
 
 def rows_of(name: str, words: list[str], sources: dict[str, Path], rounds: int) -> list[tuple[str, ...]]:
@@ -58,8 +80,8 @@ def rows_of(name: str, words: list[str], sources: dict[str, Path], rounds: int) 
     for (label, state), runs in found.items():
         middle = {key: statistics.median(run[key] for run in runs) for key in runs[0]}
         work = middle["trace_s"] + middle["lower_s"]
-        numbers = (f"{middle['programs']:.0f}", f"{work:.1f}", f"{middle['compile_s']:.1f}", f"{middle['cpu_s']:.1f}")
-        rows.append((f"{name}{label}", state, *numbers))
+        seconds = (work, middle["compile_s"], middle["cpu_s"], middle["wall_s"])
+        rows.append((f"{name}{label}", state, f"{middle['programs']:.0f}", *(f"{each:.1f}" for each in seconds)))
     return rows
 
 

@@ -25,7 +25,9 @@ def pytest_configure(config):
     """Programs of small tests run for less time than their optimisation takes. Slow tests run optimised programs."""
     flags = "--xla_cpu_parallel_codegen_split_count=1"  # the workers are as many as the cores
     if not {"slow", "validate"} & set(config.option.markexpr.replace("not slow", "").replace("not validate", "").split()):
-        flags += " --xla_backend_optimization_level=0 --xla_llvm_disable_expensive_passes=true --xla_cpu_use_fusion_emitters=false"
+        flags += (
+            " --xla_backend_optimization_level=0 --xla_llvm_disable_expensive_passes=true --xla_cpu_use_fusion_emitters=false"
+        )
     os.environ["XLA_FLAGS"] = f"{flags} {os.environ.get('XLA_FLAGS', '')}"
 
 
