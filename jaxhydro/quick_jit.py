@@ -93,3 +93,8 @@ def on_device(values: ArrayLike) -> jax.Array:
         values: The numbers; they are copied.
     """
     return jax.device_put(np.array(values))
+
+
+def as_data(values: ArrayLike) -> jax.Array:
+    """Numbers as an argument of `quick_jit`, which makes a Python number part of the program; a JAX array is left as it is."""
+    return values if isinstance(values, jax.Array) else on_device(np.asarray(values, float))

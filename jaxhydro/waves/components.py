@@ -1,5 +1,6 @@
 """First-order wave components, and plane waves (free or bound) of any order."""
 
+import dataclasses
 import math
 
 import equinox as eqx
@@ -7,6 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Complex, Float
 
 from jaxhydro.environment import Environment
+from jaxhydro.quick_jit import as_data, quick_jit
 from jaxhydro.waves.dispersion import wavenumber
 
 
@@ -90,10 +92,16 @@ def components(
     Returns:
         The components.
     """
+    given = amplitude, omega, environment.depth, environment.gravity, heading, phase
+    return Components(*_fields(*map(as_data, given)), first)
+
+
+@quick_jit
+def _fields(amplitude: Array, omega: Array, depth: Array, gravity: Array, heading: Array, phase: Array) -> tuple[Array, ...]:
+    """Fields of `Components`."""
     amplitude, omega = jnp.asarray(amplitude, float), jnp.asarray(omega, float)
-    k = wavenumber(omega, jnp.asarray(environment.depth), jnp.asarray(environment.gravity))
     ones = jnp.ones_like(omega)
-    return Components(amplitude, omega, k, heading * ones, phase * ones, first)
+    return amplitude, omega, wavenumber(omega, depth, gravity), heading * ones, phase * ones
 
 
 class PlaneWaves(eqx.Module):
@@ -126,8 +134,7 @@ class PlaneWaves(eqx.Module):
     @classmethod
     def free(cls, waves: Components, environment: Environment) -> "PlaneWaves":
         """Free first-order waves of components."""
-        elevation = waves.complex_amplitude()
-        return cls(waves.omega, waves.vector(), elevation, environment.gravity * elevation / waves.omega)
+        return cls(*_free(dataclasses.replace(waves, first=None), as_data(environment.gravity)))
 
     def __add__(self, other: "PlaneWaves") -> "PlaneWaves":
         """Both sets of waves together."""
@@ -137,3 +144,10 @@ class PlaneWaves(eqx.Module):
             jnp.concatenate([self.elevation, other.elevation]),
             jnp.concatenate([self.potential, other.potential]),
         )
+
+
+@quick_jit
+def _free(waves: Components, gravity: Float[Array, ""]) -> tuple[Array, ...]:
+    """Fields of `PlaneWaves.free`."""
+    elevation = waves.complex_amplitude()
+    return waves.omega, waves.vector(), elevation, gravity * elevation / waves.omega

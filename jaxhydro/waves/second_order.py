@@ -5,6 +5,7 @@ Manuel (2011), Engineering Structures 33, 1246-1257. The mean flow of equal freq
 zero.
 """
 
+import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, Literal
@@ -17,6 +18,7 @@ from jaxtyping import Array, Bool, Complex, Float, Int, PyTree
 
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
+from jaxhydro.quick_jit import as_data, quick_jit
 from jaxhydro.waves.components import Components, PlaneWaves
 
 Kind = Literal["sum", "difference"]
@@ -111,10 +113,19 @@ def bound_waves(
     Raises:
         UnknownName: Another kind.
     """
-    omega, vector, amplitude = waves.omega, waves.vector(), waves.complex_amplitude()
-    bound = []
     for kind in kinds:
         check(kinds=(kind, KINDS))
+    water = jax.tree.map(as_data, environment)
+    return _bound_waves(dataclasses.replace(waves, first=None), water, tuple(kinds), set_down, highest_difference)
+
+
+@quick_jit
+def _bound_waves(
+    waves: Components, environment: Environment, kinds: Sequence[Kind], set_down: bool, highest_difference: float | None
+) -> PlaneWaves:
+    """`bound_waves`."""
+    omega, vector, amplitude = waves.omega, waves.vector(), waves.complex_amplitude()
+    bound = []
     if "sum" in kinds:
         i, j = np.tril_indices(omega.size)
         weight = jnp.where(i == j, 0.5, 1.0) * amplitude[i] * amplitude[j]

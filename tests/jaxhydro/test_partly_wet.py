@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from one_program import flow, one_program
 
 import jaxhydro as jh
 from jaxhydro.dynamics.model import Model
@@ -88,6 +89,11 @@ def load_of(model: Model) -> Buoyancy:
     return next(load for load in model.loads if isinstance(load, Buoyancy))
 
 
+@one_program
+def force_on(load: Buoyancy, position, weight) -> jax.Array:
+    return load.force(position, rotation(position[3:]), weight)
+
+
 LYING = BOX | {"d": [12.0, 5.0], "rA": [-30, 0, -0.5], "rB": [30, 0, -0.5]}  # wet to 3 m
 STANDING = {"shape": "rect", "d": [60.0, 12.0], "rA": [0, 0, -3.0], "rB": [0, 0, 2.0]}
 
@@ -106,8 +112,7 @@ def test_statics_of_a_lying_box(member: dict) -> None:
     assert found["C44"] == pytest.approx(weight * (60 * 12**3 / 12 - volume * 1.5), rel=1e-9)
     assert found["C55"] == pytest.approx(weight * (12 * 60**3 / 12 - volume * 1.5), rel=1e-9)
     for position in ([0, 0, 0.4, 0.1, 0.02, 0.3], [0, 0, -0.5, -0.08, -0.03, 0.0]):
-        q = jnp.asarray(position, float)
-        one, other = (np.asarray(part.force(q, rotation(q[3:]), weight)) for part in (load, upright))
+        one, other = (np.asarray(force_on(part, np.array(position), weight)) for part in (load, upright))
         assert_allclose(one, other, atol=1e-9 * np.abs(other).max())
 
 
@@ -141,9 +146,10 @@ def wet_surface(sea, time: float) -> np.ndarray:
     faces = [(np.meshgrid(x, y, [-3.0]), [0, 0, -1.0], 1.0 * 0.5)]
     faces += [(np.meshgrid(x, [side], z), [0, np.sign(side), 0], 1.0 * 0.25) for side in (-6.0, 6.0)]
     faces += [(np.meshgrid([end], y, z), [np.sign(end), 0, 0], 0.5 * 0.25) for end in (-30.0, 30.0)]
-    for grid, normal, area in faces:
-        points = np.stack([part.reshape(-1) for part in grid])
-        pressure = RHO * np.asarray(sea.flow(jnp.asarray(time), jnp.asarray(points)).pressure)
+    every = [np.stack([part.reshape(-1) for part in grid]) for grid, _, _ in faces]
+    whole = RHO * np.asarray(flow(sea, time, np.concatenate(every, axis=1)).pressure)
+    pressures = np.split(whole, np.cumsum([points.shape[1] for points in every])[:-1])
+    for points, pressure, (_, normal, area) in zip(every, pressures, faces, strict=True):
         force = -pressure[:, None] * np.array(normal) * area
         total += np.concatenate([force.sum(axis=0), np.cross(points.T, force).sum(axis=0)])
     return total
@@ -206,7 +212,7 @@ def wet_cylinder(sea, time: float, a: np.ndarray, b: np.ndarray, diameter: float
     points, normals = np.concatenate([side, bottom]), np.concatenate([normal, down])
     wet = points[:, 2] < 0
     points, normals = points[wet], normals[wet]
-    pressure = RHO * np.asarray(sea.flow(jnp.asarray(time), jnp.asarray(points.T)).pressure)
+    pressure = RHO * np.asarray(flow(sea, time, points.T).pressure)
     force = -pressure[:, None] * normals
     return np.concatenate([force.sum(axis=0), np.cross(points, force).sum(axis=0)])
 
