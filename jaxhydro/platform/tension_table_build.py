@@ -1,11 +1,11 @@
 """Ropes with tabulated tension from the platform file."""
 
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
 from jaxhydro.loads.tension_table_lines import TensionTable, TensionTableLines
 from jaxhydro.platform.tension_table_schema import TensionTableMooring
+from jaxhydro.quick_jit import on_device
 
 
 def tension_table(stretch: Float[np.ndarray, " n"], tension: Float[np.ndarray, " n"], interpolation: str) -> TensionTable:
@@ -29,7 +29,7 @@ def tension_table(stretch: Float[np.ndarray, " n"], tension: Float[np.ndarray, "
         slopes = np.diff(tension) / np.diff(stretch)
         inner, slope = np.stack([0 * slopes, 0 * slopes, slopes, tension[:-1]]), slopes[-1]
     beyond = np.array([[0.0], [0.0], [slope], [tension[-1]]])
-    return TensionTable(jnp.asarray(stretch), jnp.asarray(np.concatenate([inner, beyond], axis=1)))
+    return TensionTable(on_device(stretch), on_device(np.concatenate([inner, beyond], axis=1)))
 
 
 def tension_table_lines(mooring: TensionTableMooring) -> TensionTableLines:
@@ -42,8 +42,8 @@ def tension_table_lines(mooring: TensionTableMooring) -> TensionTableLines:
     ends = [(line, *copy) for line in mooring.lines for copy in line.copies()]
     ropes = mooring.ropes.values()
     return TensionTableLines(
-        jnp.asarray(np.stack([anchor for _, anchor, _ in ends], axis=1)),
-        jnp.asarray(np.stack([fairlead for _, _, fairlead in ends], axis=1)),
+        on_device(np.stack([anchor for _, anchor, _ in ends], axis=1)),
+        on_device(np.stack([fairlead for _, _, fairlead in ends], axis=1)),
         tuple(tension_table(rope.entries(), np.array(rope.tension, float), rope.interpolation) for rope in ropes),
         tuple(rope.over_strain for rope in ropes),
         tuple(names.index(line.rope) for line, _, _ in ends),

@@ -93,7 +93,7 @@ def components(
         The components.
     """
     given = amplitude, omega, environment.depth, environment.gravity, heading, phase
-    return Components(*_fields(*map(as_data, given)), first)
+    return Components(*_fields(*map(as_data, given)), first=first)
 
 
 @quick_jit

@@ -11,12 +11,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
+from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.irregular import spectrum_components
 from jaxhydro.waves.spectra import jonswap, pierson_moskowitz, tabulated
@@ -111,7 +111,7 @@ class SystemsSpectrum(AbstractDirectionalSpectrum):
         return all(system.spreading is None and system.heading == self.systems[0].heading for system in self.systems)
 
     def headings(self, omega: Float[np.ndarray, " w"], share: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
-        density = np.stack([np.asarray(system.density(jnp.asarray(omega))) for system in self.systems])
+        density = np.stack([np.asarray(system.density(on_device(omega))) for system in self.systems])
         total = density.sum(axis=0)
         total = np.where(total > 0, total, 1.0)
         headings, below = np.full(np.shape(omega), math.radians(self.systems[0].heading)), np.zeros(np.shape(omega))
@@ -147,7 +147,7 @@ class TabulatedDirections(AbstractDirectionalSpectrum):
         return float(self.heading[1] - self.heading[0])
 
     def density(self, omega: Float[Array, " w"]) -> Float[Array, " w"]:
-        return tabulated(omega, jnp.asarray(self.omega), jnp.asarray(self.values.sum(axis=1) * self.bin_width))
+        return tabulated(omega, on_device(self.omega), on_device(self.values.sum(axis=1) * self.bin_width))
 
     @property
     def long_crested(self) -> bool:
@@ -210,4 +210,4 @@ def directional_components(
     )
     first, last = waves.harmonics
     headings = spectrum.headings(np.asarray(waves.omega), equal_energy_shares(first, last, seed))
-    return dataclasses.replace(waves, heading=jnp.asarray(headings))
+    return dataclasses.replace(waves, heading=on_device(headings))

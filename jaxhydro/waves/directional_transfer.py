@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
+from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.excitation import within
 from jaxhydro.waves.heading_interpolation import HeadingInterpolation
 from jaxhydro.waves.quadratic_transfer import Transfer
@@ -52,7 +53,7 @@ class DirectionalTransfer(eqx.Module):
         """
         values = np.stack([0.5 * (table + np.conj(np.swapaxes(table, 1, 2))) for table in tables])
         values = np.einsum("dikk->dik", values) if newman else values
-        return cls(jnp.asarray(omega), HeadingInterpolation.of(heading, values), newman)
+        return cls(on_device(omega), HeadingInterpolation.of(heading, values), newman)
 
     def towards(self, heading: float) -> Transfer:
         """The transfer function of waves of one heading (rad); a plain number, not traced."""

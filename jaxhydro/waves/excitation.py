@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Complex, Float, Int
 
+from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.heading_interpolation import HeadingInterpolation
 
 TABLE_END_TOLERANCE = 1e-4  # of a table's first and last frequency, by which waves may be outside it
@@ -47,7 +48,7 @@ class Excitation(eqx.Module):
         rows = len(force) if force.ndim == 2 and len(force) % 6 == 0 else 6
         if omega.ndim != 1 or force.shape != (rows, omega.size) or omega.size < 2 or not (np.diff(omega) > 0).all():
             raise ValueError(f"two ascending frequencies or more and six forces of each, found {omega.shape}, {force.shape}")
-        return cls(jnp.asarray(omega), jnp.asarray(force))
+        return cls(on_device(omega), on_device(force))
 
     def towards(self, heading: float) -> "Excitation":
         """The same: a table of one heading."""

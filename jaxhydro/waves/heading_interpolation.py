@@ -8,6 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Complex, Float, Int
 
+from jaxhydro.quick_jit import as_data, on_device, quick_jit
+
 HEADING_TOLERANCE = math.radians(1e-6)  # rad, by which a heading may be outside a table or off an even step
 REFINEMENT = 8  # times as many headings, to which an even table of the whole circle is refined before it is splined
 
@@ -51,7 +53,7 @@ class HeadingInterpolation(eqx.Module):
         gaps = np.diff(np.r_[knots, knots[0] + 2 * math.pi])
         if len(knots) == 1:
             none = np.zeros_like(values)
-            return cls(jnp.asarray(knots), jnp.asarray(np.stack([none, none, none, values])), False)
+            return cls(on_device(knots), on_device(np.stack([none, none, none, values])), False)
         wraps = bool(len(knots) > 3 and gaps.max() <= 2 * np.median(gaps) * (1 + 1e-6))
         if not wraps:
             begin = int(np.argmax(gaps)) + 1  # after the largest gap
@@ -68,13 +70,14 @@ class HeadingInterpolation(eqx.Module):
             knots = np.r_[knots, knots[0] + 2 * math.pi]
             values = np.concatenate([values, values[:1]])
         cubic = _spline(knots, values, wraps)
-        return cls(jnp.asarray(knots), jnp.asarray(cubic), wraps)
+        return cls(on_device(knots), on_device(cubic), wraps)
 
     def covers(self, heading: Float[np.ndarray, "..."] | float) -> Bool[np.ndarray, "..."]:
         """Whether headings (rad) lie within the table, whole turns aside."""
         if self.wraps:
             return np.ones(np.shape(heading), bool)
-        first, last = float(self.heading[0]), float(self.heading[-1])
+        knots = np.asarray(self.heading)
+        first, last = float(knots[0]), float(knots[-1])
         past = np.mod(np.asarray(heading, float) - first + HEADING_TOLERANCE, 2 * math.pi)
         return past <= last - first + 2 * HEADING_TOLERANCE
 
@@ -94,9 +97,15 @@ class HeadingInterpolation(eqx.Module):
 
     def at(self, heading: Float[Array, ""] | float) -> Complex[Array, "..."]:
         """The table at one heading (rad)."""
-        index, offset = self.locate(jnp.asarray(heading, float))
-        cubic = self.coefficient[:, index]
-        return ((cubic[0] * offset + cubic[1]) * offset + cubic[2]) * offset + cubic[3]
+        return _at(self, as_data(heading))
+
+
+@quick_jit
+def _at(table: HeadingInterpolation, heading: Float[Array, ""]) -> Complex[Array, "..."]:
+    """`HeadingInterpolation.at`."""
+    index, offset = table.locate(heading)
+    cubic = table.coefficient[:, index]
+    return ((cubic[0] * offset + cubic[1]) * offset + cubic[2]) * offset + cubic[3]
 
 
 def _spline(

@@ -112,7 +112,7 @@ def harmonic_components(
     amplitude: np.ndarray, omega: np.ndarray, environment: Environment, heading: np.ndarray, phase: np.ndarray, first: int
 ) -> Components:
     """Components at successive harmonics from number `first` on: amplitude (m), frequency (rad/s), heading and phase (rad)."""
-    a, w, towards, angle = (jnp.asarray(x) for x in (amplitude, omega, heading, phase))
+    a, w, towards, angle = (on_device(x) for x in (amplitude, omega, heading, phase))
     return components(a, w, environment, heading=towards, phase=angle, first=first)
 
 

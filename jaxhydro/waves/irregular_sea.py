@@ -1,5 +1,6 @@
 """Irregular seas of first and second order."""
 
+import dataclasses
 import math
 from typing import Literal, get_args
 
@@ -10,7 +11,7 @@ from jaxtyping import Array, Complex, Float
 
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
-from jaxhydro.quick_jit import on_device
+from jaxhydro.quick_jit import as_data, on_device, quick_jit
 from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.directional_transfer import AnyTransfer
 from jaxhydro.waves.excitation import AnyExcitation
@@ -135,14 +136,14 @@ class IrregularSea(AbstractSea):
         first, last = waves.harmonics
         spectrum = np.zeros(2 * last + 1, complex)
         if order != 2:
-            at_gauge = waves.complex_amplitude() * jnp.exp(-1j * (jnp.asarray(position) @ waves.vector()))
+            at_gauge = _at_gauge(dataclasses.replace(waves, first=None), as_data(position))
             spectrum[first : last + 1] = np.asarray(at_gauge)
         if order != 1 and self.order == 2:
             spectrum += np.asarray(self.bound_elevation(position))
         omega = 2 * math.pi / float(waves.period) * np.arange(spectrum.size)
         parts = np.array_split(times, max(1, times.size * omega.size // 2_000_000))
         elevation = np.concatenate([(np.exp(1j * np.outer(part, omega)) @ spectrum).real for part in parts])
-        return elevation * np.asarray(growth(jnp.asarray(times), self.ramp))
+        return elevation * np.asarray(growth(on_device(times), self.ramp))
 
     def bound_elevation(self, position: tuple[float, float] = (0.0, 0.0)) -> Complex[Array, " b"]:
         """`elevation_spectrum` (m) of the bound waves, also for a sea of first order."""
@@ -192,13 +193,14 @@ class IrregularSea(AbstractSea):
         Arguments and errors are those of `prepared`.
         """
         waves, depth = self.components, float(self.environment.depth)
-        heading, period = float(waves.heading[0]), float(waves.period)
+        omega, first = np.asarray(waves.omega), waves.harmonics[0]
+        heading, period = float(np.asarray(waves.heading)[0]), first * 2 * math.pi / float(omega[0])
         if not self.long_crested:
             raise ValueError("a short-crested sea is evaluated directly: it has no support wavenumbers of one heading")
         if self.acting == "at the origin":  # that flow is looked up there
             points = np.concatenate([points, np.zeros((3, 1))], axis=1)
         middle, box = Box.of(points, heading, depth, excursion)
-        free = float(waves.wavenumber[-1])
+        free = float(np.asarray(waves.wavenumber)[-1])
         support_set = supports(box, free, 2 * free if self.order == 2 and "sum" in self.kinds else 0.0)
         size = round(period / clock.step)
         highest = waves.harmonics[1] * (self.order if "sum" in self.kinds else 1)
@@ -222,10 +224,16 @@ class IrregularSea(AbstractSea):
             (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp),
             None if exciting is None else exciting.towards(heading),
             None if transfer is None else transfer.towards(heading),
-            on_device((np.asarray(waves.omega) / DRIFT_REFERENCE_FREQUENCY) ** 2),
+            on_device((omega / DRIFT_REFERENCE_FREQUENCY) ** 2),
             on_device(share),
             2 * math.pi / period,
             size,
             clock,
             box.half,
         )
+
+
+@quick_jit
+def _at_gauge(waves: Components, position: Float[Array, "2"]) -> Complex[Array, " w"]:
+    """Complex amplitudes (m) of first-order waves at a horizontal position."""
+    return waves.complex_amplitude() * jnp.exp(-1j * (position @ waves.vector()))

@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
+from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.excitation import within
 
 MIN_EIGENVALUE = 1e-6  # of the largest eigenvalue: what is less adds nothing
@@ -59,7 +60,7 @@ class Transfer(eqx.Module):
         largest = np.argsort(-size, axis=1)[:, :count]
         vector = np.take_along_axis(vector, largest[:, None, :], axis=2)
         value = np.take_along_axis(value, largest, axis=1)
-        return cls(jnp.asarray(omega), jnp.asarray(value), jnp.asarray(np.swapaxes(vector, 1, 2)))
+        return cls(on_device(omega), on_device(value), on_device(np.swapaxes(vector, 1, 2)))
 
     def at(self, omega: Float[Array, " w"]) -> Complex[Array, "6 m w"]:
         """Filters at other frequencies (rad/s), (6, m, w)."""

@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro.environment import Environment
+from jaxhydro.quick_jit import on_device
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.sea import Stretching
@@ -72,8 +73,8 @@ def regular_wave(
     if order < 1:
         raise ValueError(f"the order of a regular wave is 1 or more, found {order}")
     omega = 2 * math.pi / period
-    wave = components(jnp.array([0.5 * height]), jnp.array([omega]), environment, heading=heading, phase=phase)
-    k, depth = float(wave.wavenumber[0]), float(environment.depth)
+    wave = components(on_device([0.5 * height]), on_device([omega]), environment, heading=heading, phase=phase)
+    k, depth = float(np.asarray(wave.wavenumber)[0]), float(environment.depth)
     _check_breaking(height, period, k, depth, 1.0 if order <= 2 else MAX_LENGTHENING)
     if order > 2:
         if stretching not in ("vertical", "none"):
@@ -106,7 +107,7 @@ def _steep(
     turn = np.exp(1j * phase * number)
     along = np.array([[math.cos(heading)], [math.sin(heading)]])
     fields = number * omega, along * number * solution.wavenumber, solution.elevation * turn, solution.potential * turn
-    waves, bound = (PlaneWaves(*(jnp.asarray(field[..., part]) for field in fields)) for part in (slice(1), slice(1, None)))
+    waves, bound = (PlaneWaves(*(on_device(field[..., part]) for field in fields)) for part in (slice(1), slice(1, None)))
     return SteepWave(waves, environment, ramp, stretching, bound)
 
 

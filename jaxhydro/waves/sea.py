@@ -14,6 +14,7 @@ import numpy as np
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
+from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.directional_transfer import AnyTransfer
 from jaxhydro.waves.excitation import AnyExcitation
 from jaxhydro.waves.flow import Cylinders, Flow
@@ -174,5 +175,5 @@ def elevation_at_origin(sea: AbstractSea, times: ArrayLike) -> np.ndarray | None
         elevation = sea.elevation(time, jnp.zeros((2, 1)))
         return None if elevation is None else elevation[0]
 
-    elevation = jax.jit(jax.vmap(at))(jnp.asarray(times))
+    elevation = jax.jit(jax.vmap(at))(on_device(np.asarray(times, float)))
     return None if elevation is None else np.asarray(elevation)

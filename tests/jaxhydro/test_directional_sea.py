@@ -4,11 +4,11 @@ import math
 from pathlib import Path
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
+from one_program import complex_amplitude, elevation, vector
 
 import jaxhydro as jh
 from jaxhydro.environment import Environment
@@ -197,8 +197,8 @@ def test_a_negative_exponent_is_refused() -> None:
 
 def double_sum(waves: Components, depth: float, gravity: float) -> np.ndarray:
     """Second-order elevation by harmonic at the origin, but for the mean: Sharma and Dean's own D and B, term by term."""
-    a = np.asarray(waves.complex_amplitude())
-    k, kv, r = np.asarray(waves.wavenumber), np.asarray(waves.vector()).T, np.asarray(waves.omega) ** 2 / gravity
+    a = np.asarray(complex_amplitude(waves))
+    k, kv, r = np.asarray(waves.wavenumber), np.asarray(vector(waves)).T, np.asarray(waves.omega) ** 2 / gravity
     first, last = waves.harmonics
     found = np.zeros(2 * last + 1, complex)
     for n in range(a.size):
@@ -231,7 +231,8 @@ def test_second_order_takes_each_pair_at_its_own_headings(depth: float) -> None:
     assert not sea.long_crested
     assert np.abs(found - expected)[1:].max() < 1e-9 * np.abs(expected).max()
     times = np.linspace(0.0, 120.0, 7)
-    direct = [float(sea.direct().elevation(jnp.asarray(t), jnp.zeros((2, 1)))[0]) for t in times]
+    exact = sea.direct()
+    direct = [float(elevation(exact, t, np.zeros((2, 1)))[0]) for t in times.tolist()]
     assert_allclose(direct, sea.gauge(times), atol=1e-9)
 
 

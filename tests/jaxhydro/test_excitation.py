@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
+from one_program import complex_amplitude, one_program, vector
 from scipy.signal import butter, freqs
 from test_loads import COLUMN, PONTOON, RHO, G, build, model_of, only
 from test_water_effects import HULL, WATER, acts, irregular, with_values
@@ -36,6 +37,7 @@ SHARED = Path(__file__).resolve().parents[3] / "shared" / "reference"
 WAMIT = SHARED / "iea15-umaine" / "HydroData" / "IEA-15-240-RWT-UMaineSemi.3"
 RUN = SHARED / "openfast" / "ss1_nwt"
 REST = np.zeros(6)
+rotation = one_program(jh.rotations.rotation)
 AWAY = np.array([7.0, -3.0, 1.0, 0.02, -0.03, 0.4])
 
 
@@ -48,8 +50,8 @@ def forces(seed: int = 5) -> np.ndarray:
 def by_sum(sea: jh.IrregularSea, time: float, table: np.ndarray, place=(0.0, 0.0)) -> np.ndarray:
     """The sum over components, X by NumPy's straight lines."""
     waves = sea.components
-    omega, vector = np.asarray(waves.omega), np.asarray(waves.vector())
-    one = np.asarray(waves.complex_amplitude()) * np.exp(1j * (omega * time - np.asarray(place) @ vector))
+    omega, along = np.asarray(waves.omega), np.asarray(vector(waves))
+    one = np.asarray(complex_amplitude(waves)) * np.exp(1j * (omega * time - np.asarray(place) @ along))
     at = [np.interp(omega, GRID, x.real, 0, 0) + 1j * np.interp(omega, GRID, x.imag, 0, 0) for x in table]
     return (np.array(at) @ one).real
 
@@ -61,10 +63,11 @@ def test_the_force_is_the_sum_over_components(order: int, heading: float) -> Non
     sea, table = irregular(order, heading), forces()
     model = model_of(build(COLUMN), ComputedExcitation(Excitation.of(GRID, table), share=0.7))
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 400, (0.0,)), exciting=model.excitation)
+    direct = sea.direct()
     for position in (REST, AWAY * [1, 1, 1, 0, 0, 0]):
         for time in (10.0, 36.5, 107.25):
             exact = 0.7 * by_sum(sea, time, table, position[:2])
-            for met, error in ((prepared, 2e-5), (sea, 1e-9), (sea.direct(), 1e-9)):
+            for met, error in ((prepared, 2e-5), (sea, 1e-9), (direct, 1e-9)):
                 found, _ = acts(model, position, REST, model.rest().memory, met, time)
                 assert_allclose(found, exact, atol=error * np.abs(exact).max())
 
@@ -77,9 +80,9 @@ def test_it_takes_the_place_of_the_strips_own() -> None:
     sea = irregular(2).direct()
     model = strips.with_effect(table)
     own, _ = acts(strips, AWAY, REST, (None,) * 2, sea, 20.0)
-    rotation = np.asarray(jh.rotations.rotation(jnp.asarray(AWAY[3:])))
+    turn = np.asarray(rotation(AWAY[3:]))
     earth = by_sum(irregular(), 20.0, forces(), AWAY[:2])
-    theirs = np.concatenate([rotation.T @ earth[:3], rotation.T @ earth[3:]])
+    theirs = np.concatenate([turn.T @ earth[:3], turn.T @ earth[3:]])
     for share in (0.0, 0.4, 1.0):
         found, _ = acts(model.with_values({"computed_excitation.share": share}), AWAY, REST, model.rest().memory, sea, 20.0)
         assert_allclose(found, (1 - share) * own + share * theirs, atol=1e-9 * np.abs(theirs).max())
@@ -127,7 +130,7 @@ def test_the_slow_displacement_is_that_behind_a_butterworth_filter(period: float
 
     def rates(velocity: float, memory: np.ndarray) -> np.ndarray:
         turning = AWAY * [0, 0, 0, 1, 1, 1]  # velocities are in body axes
-        along = np.asarray(jh.rotations.rotation(jnp.asarray(turning[3:]))).T @ [velocity, 0.0, 0.0]
+        along = np.asarray(rotation(turning[3:])).T @ [velocity, 0.0, 0.0]
         rate = acts(model, turning, [*along, 0, 0, 0], (jnp.asarray(memory),), irregular(), 0.0)[1]
         return np.asarray(rate[0])[:, 0]
 
@@ -228,9 +231,10 @@ def test_a_file_is_read_with_its_units(tmp_path: Path) -> None:
     few = np.asarray(read_excitation(path, RHO, G, length=2.0, heading=390.0).force)
     assert_allclose(few[4], (unit * forces(2))[4], atol=1e-7 * np.abs(unit * forces(2)).max())
     assert not few[[1, 3, 5]].any()
-    between = found.at(jnp.asarray([0.5 * (GRID[3] + GRID[4]), 0.1, 2.3]))
-    assert_allclose(between[:, 0], 0.5 * (found.force[:, 3] + found.force[:, 4]), rtol=1e-9)
-    assert not np.asarray(between[:, 1:]).any()
+    between = np.asarray(one_program(Excitation.at)(found, np.array([0.5 * (GRID[3] + GRID[4]), 0.1, 2.3])))
+    force = np.asarray(found.force)
+    assert_allclose(between[:, 0], 0.5 * (force[:, 3] + force[:, 4]), rtol=1e-9)
+    assert not between[:, 1:].any()
 
 
 def test_broken_files_are_told(tmp_path: Path) -> None:
@@ -316,7 +320,7 @@ def test_openfast_has_the_same_force() -> None:
     record = pd.read_csv(RUN / "out.csv.gz", skiprows=[1])
     omega, time = waves.omega_rad_s.to_numpy(), record.Time.to_numpy(float)[::16]
     amplitude = waves.amp_m.to_numpy() * np.exp(1j * waves.phase_rad.to_numpy())
-    x = np.asarray(excitation.at(jnp.asarray(omega)))
+    x = np.asarray(one_program(Excitation.at)(excitation, omega))
     for i, channel in ((0, "B1WvsF1xi"), (2, "B1WvsF1zi"), (4, "B1WvsM1yi")):
         ours = (np.exp(1j * np.outer(time, omega)) @ (x[i] * amplitude)).real
         theirs = record[channel].to_numpy(float)[::16]
