@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from jaxhydro.choices import unknown
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import AbstractLoad
-from jaxhydro.quick_jit import on_device
+from jaxhydro.quick_jit import on_device, quick_jit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -84,6 +84,9 @@ def strain_energy(stiffness: Float[Array, "6 6"], vectors: Float[Array, "6 m"]) 
     return energy / energy.sum(axis=0)
 
 
+_strain_energy = quick_jit(strain_energy)
+
+
 def modes_of(
     mass: Float[np.ndarray, "6 6"],
     stiffness: Float[np.ndarray, "6 6"],
@@ -108,7 +111,7 @@ def modes_of(
     _with_memories(memories, scale, mass, stiffness, square, vectors)
     oscillates, falls = square > 1e-10 * largest, square < -1e-6 * largest
     vectors[:, oscillates] = _one_motion_each(square[oscillates], vectors[:, oscillates], scale)
-    share = strain_energy(on_device(stiffness), on_device(vectors[:, oscillates]))
+    share = _strain_energy(on_device(stiffness), on_device(vectors[:, oscillates]))
     motion = tuple(DOFS[int(i)] for i in np.argmax(np.asarray(share), axis=0))
     vectors = vectors * scale[:, None]
     shape = vectors[:, oscillates].T

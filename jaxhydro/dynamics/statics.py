@@ -95,6 +95,11 @@ def _solve(model: Model) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
     return _root(model, None)
 
 
+@quick_jit
+def _balance_upright(model: Model) -> Float[Array, "6"]:
+    return _balance(jnp.zeros(6), model)
+
+
 def equilibrium(model: Model) -> Float[Array, "6"]:
     """Static equilibrium in still water, by Newton's method; differentiable in the model.
 
@@ -116,7 +121,7 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
     rest = np.asarray(position)
     worst = int(np.argmax(np.abs(np.nan_to_num(np.asarray(residual), nan=np.inf))))
     if not (np.abs(np.asarray(residual)).max() < 1e-8 and np.isfinite(rest).all()):
-        off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else MOMENT_ARM * float(model.size))
+        off = float(np.asarray(_balance_upright(model))[worst]) * (1 if worst < 3 else MOMENT_ARM * float(model.size))
         raise EquilibriumError(
             f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
             f"{'' if worst < 3 else ' times 1 m'} at the reference position; check mass, volume and mooring"

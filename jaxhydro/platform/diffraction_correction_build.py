@@ -54,11 +54,14 @@ def _rows(model: Model, whole: AnyExcitation, omega: Float[np.ndarray, " n"], ke
     return _of_one_heading(model, whole, 0.0, omega, keys)
 
 
+_table_at = quick_jit(Excitation.at)
+
+
 def _of_one_heading(
     model: Model, table: Excitation, heading: float, omega: Float[np.ndarray, " n"], keys: tuple[Key, ...]
 ) -> Excitation:
     base, each = strip_forces(model, omega, heading, keys)
-    correction = np.asarray(table.at(on_device(omega))) - base
+    correction = np.asarray(_table_at(table, on_device(omega))) - base
     return Excitation.of(omega, np.concatenate([correction, *each]))
 
 

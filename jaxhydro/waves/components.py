@@ -93,11 +93,13 @@ def components(
         The components.
     """
     given = amplitude, omega, environment.depth, environment.gravity, heading, phase
-    return Components(*_fields(*map(as_data, given)), first=first)
+    return Components(*_fields(*map(as_data, given)), first)
 
 
 @quick_jit
-def _fields(amplitude: Array, omega: Array, depth: Array, gravity: Array, heading: Array, phase: Array) -> tuple[Array, ...]:
+def _fields(
+    amplitude: Array, omega: Array, depth: Array, gravity: Array, heading: Array, phase: Array
+) -> tuple[Array, Array, Array, Array, Array]:
     """Fields of `Components`."""
     amplitude, omega = jnp.asarray(amplitude, float), jnp.asarray(omega, float)
     ones = jnp.ones_like(omega)

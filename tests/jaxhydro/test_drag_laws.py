@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from one_program import one_program
 from scipy.integrate import solve_ivp
 from scipy.signal import lfilter
 from test_loads import (
@@ -135,18 +136,20 @@ def test_labels_and_values_come_back(name: str) -> None:
 def test_gradients_are_finite_at_rest(name: str) -> None:
     """By state, memory and every parameter, on the motionless platform and on one that moves; jit = eager, vmap = loop."""
     model = with_law(build(COLUMN, PONTOON), law_of(name, build(COLUMN, PONTOON)))
+    force = lambda y: acting.__wrapped__(model.at_values(y[2]), jnp.zeros(6), *y[:2], jh.StillWater())  # noqa: E731
+    slopes = one_program(jax.jacrev(force))
     for velocity, memory in ((jnp.zeros(6), model.rest().memory), (VELOCITY, lively(model))):
-        y = (velocity, memory, model.values)
-        slopes = jax.jacrev(lambda y: acting(model.at_values(y[2]), jnp.zeros(6), *y[:2], jh.StillWater()))(y)
-        assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves(slopes))
+        found = slopes((velocity, memory, model.values))
+        assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(found))
     memories = [lively(model, seed) for seed in range(3)]
     loop = [acting(model, POSITION, VELOCITY, memory, SEA) for memory in memories]
-    stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves), *memories)
+    stacked = jax.tree.map(lambda *leaves: np.stack(leaves), *memories)
     one = lambda memory, velocity: acting.__wrapped__(model, POSITION, velocity, memory, SEA)  # noqa: E731
-    batch = eqx.filter_jit(jax.vmap(one))(stacked, jnp.stack(3 * [VELOCITY]))
+    batch = eqx.filter_jit(jax.vmap(one))(stacked, np.stack(3 * [VELOCITY]))
     for whole, alone, *parts in zip(*map(jax.tree.leaves, (batch, one(memories[0], VELOCITY), *loop)), strict=True):
-        assert whole.dtype == jnp.float64 and bool(jnp.isfinite(whole).all())
-        scale = float(jnp.abs(whole).max()) + 1e-300
+        whole, alone, *parts = map(np.asarray, (whole, alone, *parts))
+        assert whole.dtype == np.float64 and np.isfinite(whole).all()
+        scale = np.abs(whole).max() + 1e-300
         assert_allclose(whole / scale, np.stack(parts) / scale, atol=1e-13)
         assert_allclose(alone / scale, parts[0] / scale, atol=1e-13)
 

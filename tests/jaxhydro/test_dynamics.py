@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from one_program import one_program
 from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
@@ -144,23 +145,35 @@ def test_output_at_recorded_times() -> None:
     assert_allclose(few.position, coarse.position[some], rtol=1e-12, atol=1e-12)
 
 
+@one_program
+def read(grid: Grid, times) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Position, rate and acceleration of sway."""
+    return grid.at(times, (1,))
+
+
+@one_program
+def speed(grid: Grid, times) -> jax.Array:
+    """Derivative of the position of sway by the times."""
+    return jax.jvp(lambda times: grid.at(times, (1,))[0][:, 0], (times,), (jnp.ones_like(times),))[1]
+
+
 def test_interpolation_is_of_sixth_order() -> None:
     """Quintic Hermite of a sine: error (h omega)^6 / (2^6 6!) at most, velocity and acceleration consistent with it."""
     errors = []
     for step in (0.4, 0.2):
-        t = step * jnp.arange(60)
-        curve = [jnp.tile(f(t)[:, None], 6) for f in (jnp.sin, jnp.cos, lambda t: -jnp.sin(t))]
-        grid = Grid(jnp.zeros(()), jnp.asarray(step), jnp.asarray(59), *curve)
-        at = jnp.linspace(0.3, 10.0, 197)
-        x, v, a = grid.at(at, (1,))
-        assert float(jnp.abs(v[:, 0] - jnp.cos(at)).max()) < 3 * step**5 / 720
-        assert float(jnp.abs(a[:, 0] + jnp.sin(at)).max()) < 3 * step**4 / 24
-        errors.append(float(jnp.abs(x[:, 0] - jnp.sin(at)).max()))
+        t = step * np.arange(60)
+        curve = [np.tile(f(t)[:, None], 6) for f in (np.sin, np.cos, lambda t: -np.sin(t))]
+        grid = Grid(np.zeros(()), np.asarray(step), np.asarray(59), *curve)
+        at = np.linspace(0.3, 10.0, 197)
+        x, v, a = (np.asarray(one)[:, 0] for one in read(grid, at))
+        assert np.abs(v - np.cos(at)).max() < 3 * step**5 / 720
+        assert np.abs(a + np.sin(at)).max() < 3 * step**4 / 24
+        errors.append(np.abs(x - np.sin(at)).max())
         assert errors[-1] < step**6 / (64 * 720) * 1.01
-        knots = grid.at(t[:-1], (1,))
-        assert_allclose(knots[0][:, 0], jnp.sin(t[:-1]), rtol=1e-14, atol=1e-14)
-        moved = jax.jvp(lambda times, grid=grid: grid.at(times, (1,))[0][:, 0], (t[:-1],), (jnp.ones(59),))[1]
-        assert_allclose(moved, jnp.cos(t[:-1]), rtol=0, atol=1e-12)  # at a step's time as well: so begins a clock's delay
+        knots = np.asarray(read(grid, t[:-1])[0])
+        assert_allclose(knots[:, 0], np.sin(t[:-1]), rtol=1e-14, atol=1e-14)
+        # at a step's time as well: so begins a clock's delay
+        assert_allclose(speed(grid, t[:-1]), np.cos(t[:-1]), rtol=0, atol=1e-12)
     assert math.log2(errors[0] / errors[1]) == pytest.approx(6, abs=0.2)
 
 
@@ -228,22 +241,25 @@ def test_gradient_by_diffrax_reverse() -> None:
 # exact motions
 
 
+body_velocity = one_program(jh.Model.body_velocity)
+
+
 def test_free_body_keeps_its_momentum_and_energy() -> None:
     """Euler's equations: a tumbling body off its reference point, nothing acting on it (gravity 1e-12)."""
     body = {"mass": 8e6, "centre_of_mass": [3, -2, -8], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 7e9, "Ixz": 3e8}}
     model = jh.build(platform(rigid_body=body, water={"density": RHO, "depth": 200.0, "gravity": 1e-12}))
-    spin, position = jnp.array([0.05, -0.08, 0.5]), jnp.array([1.0, 2.0, 3.0, 0.2, -0.3, 0.5])
-    grid = run(model, position, jnp.concatenate([jnp.array([0.7, -0.4, 0.2]), spin]), 0.05, 600)
+    velocity, position = np.array([0.7, -0.4, 0.2, 0.05, -0.08, 0.5]), np.array([1.0, 2.0, 3.0, 0.2, -0.3, 0.5])
+    grid = run(model, position, velocity, 0.05, 600)
     inertia, centre = np.asarray(model.body.inertia), np.array([3.0, -2, -8])
     momentum, energy, drift = [], [], []
-    for q, rate in zip(np.asarray(grid.position[:601:20]), np.asarray(grid.rate[:601:20]), strict=True):
-        v = np.asarray(model.body_velocity(jnp.asarray(q), jnp.asarray(rate)))
+    for q, rate in zip(np.asarray(grid.position)[:601:20], np.asarray(grid.rate)[:601:20], strict=True):
+        v = np.asarray(body_velocity(q, rate))
         matrix = Rotation.from_euler("ZYX", q[:2:-1]).as_matrix()
         velocity = v[:3] + np.cross(v[3:], centre)
         momentum.append(matrix @ inertia @ v[3:])
         drift.append(matrix @ velocity)
         energy.append(0.5 * 8e6 * velocity @ velocity + 0.5 * v[3:] @ inertia @ v[3:])
-    assert np.ptp(np.array(grid.position[:601, 5])) > 4.0  # it did turn
+    assert np.ptp(np.array(grid.position)[:601, 5]) > 4.0  # it did turn
     for kept in (momentum, energy, drift):
         kept = np.array(kept)
         assert_allclose(kept, np.broadcast_to(kept[0], kept.shape), rtol=1e-7, atol=1e-7 * np.abs(kept).max())
@@ -316,23 +332,25 @@ def test_acceleration_and_its_derivatives() -> None:
     """The solution against numpy.linalg.solve; its derivatives against JAX's through jnp.linalg.solve."""
     rng = np.random.default_rng(3)
     lever = rng.normal(size=(6, 4)) * np.array([1, 1, 1, 30, 30, 30])[:, None]
-    moments = jnp.asarray(np.einsum("ik,jk->ijk", lever, lever))
-    mass, force, masses = map(jnp.asarray, (positive_definite(rng), rng.normal(size=6), rng.uniform(0, 1e6, 4)))
+    moments = np.einsum("ik,jk->ijk", lever, lever)
+    mass, force, masses = positive_definite(rng), rng.normal(size=6), rng.uniform(0, 1e6, 4)
     arguments = (mass, force, masses, moments)
 
     def plain(mass, force, masses, moments):
         return jnp.linalg.solve(mass + moments @ masses, force)
 
-    assert_allclose(accelerate(*arguments), plain(*arguments), rtol=1e-9)
-    weights = jnp.asarray(rng.normal(size=6)) / jnp.abs(plain(*arguments))
+    exact = np.asarray(one_program(plain)(*arguments))
+    assert_allclose(one_program(accelerate)(*arguments), exact, rtol=1e-9)
+    weights = rng.normal(size=6) / np.abs(exact)
     for differentiate in (jax.grad, jax.jacfwd):
         found, expected = (
-            differentiate(lambda *x, f=f: f(*x) @ weights, argnums=(0, 1, 2))(*arguments) for f in (accelerate, plain)
+            one_program(differentiate(lambda *x, f=f: f(*x) @ weights, argnums=(0, 1, 2)))(*arguments)
+            for f in (accelerate, plain)
         )
-        for one, other in zip(found, expected, strict=True):
+        for one, other in zip(map(np.asarray, found), map(np.asarray, expected), strict=True):
             other = 0.5 * (other + other.T) if one.shape == (6, 6) else other
             one = 0.5 * (one + one.T) if one.shape == (6, 6) else one
-            assert_allclose(one, other, rtol=1e-7, atol=1e-9 * float(jnp.abs(other).max()))
+            assert_allclose(one, other, rtol=1e-7, atol=1e-9 * np.abs(other).max())
 
 
 @pytest.mark.parametrize("directions", ["body", "earth"])
@@ -345,9 +363,10 @@ def test_slope_of_the_rate_with_attitude(directions: str) -> None:
     def rate(position):
         return model.rate(jnp.asarray(0.0), eqx.tree_at(lambda s: s.position, state, position), STILL).velocity
 
-    place, size = jnp.array([0.5, 0.1, 0.2, 0.02, 0.05, 0.03]), 1e-5
-    expected = jnp.stack([(rate(place + size * e) - rate(place - size * e)) / (2 * size) for e in jnp.eye(6)], axis=1)
-    assert_allclose(jax.jacfwd(rate)(place), expected, atol=1e-7 * float(jnp.abs(expected).max()))
+    place, size = np.array([0.5, 0.1, 0.2, 0.02, 0.05, 0.03]), 1e-5
+    high, low = (np.stack([rate(place + sign * size * e) for e in np.eye(6)], axis=1) for sign in (1, -1))
+    expected = (high - low) / (2 * size)
+    assert_allclose(one_program(jax.jacfwd(rate))(place), expected, atol=1e-7 * np.abs(expected).max())
 
 
 # statics

@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from one_program import one_program
 from scipy.integrate import solve_ivp
 
 import jaxhydro as jh
@@ -48,9 +49,13 @@ def build(*guided: dict, **changes: Any) -> jh.Model:
     return jh.build(validate(Platform, document(*guided, **changes), "platform.yaml"))
 
 
+@one_program
+def acceleration(model: jh.Model, position: Any, velocity: Any) -> jax.Array:
+    return model.rate(jnp.zeros(()), jh.State(position, velocity, model.rest().memory), jh.StillWater()).velocity
+
+
 def rates(model: jh.Model, position: Any, velocity: Any) -> np.ndarray:
-    state = jh.State(jnp.asarray(position, float), jnp.asarray(velocity, float), model.rest().memory)
-    return np.asarray(model.rate(jnp.zeros(()), state, jh.StillWater()).velocity)
+    return np.asarray(acceleration(model, np.asarray(position, float), np.asarray(velocity, float)))
 
 
 def samples(n: int = 4) -> tuple[np.ndarray, np.ndarray]:

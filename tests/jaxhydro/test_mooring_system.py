@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from one_program import one_program
 
 from jaxhydro.interop.mooring_system import (
     Attachment,
@@ -15,6 +16,7 @@ from jaxhydro.interop.mooring_system import (
     NoCatenaries,
     catenary_section,
 )
+from jaxhydro.loads import CatenaryLines
 from jaxhydro.platform.catenary_build import catenary_lines
 from jaxhydro.platform.catenary_schema import Catenary
 
@@ -60,7 +62,7 @@ def test_it_is_a_mooring_of_the_platform_file() -> None:
     oc3 = system(points, [LineType("main", 0.09, 77.7066, 384.243e6)], [MooringLine("1", ("a", "f"), 902.2, "main")], 320.0)
     made = Catenary.model_validate(catenary_section(oc3, DEPTH, DENSITY, GRAVITY))
     load = catenary_lines(made, SimpleNamespace(density=DENSITY, depth=DEPTH, gravity=GRAVITY))
-    tension, direction = load.tension(np.zeros(6), np.eye(3))
+    tension, direction = map(np.asarray, one_program(CatenaryLines.tension)(load, np.zeros(6), np.eye(3)))
     assert float(tension[0]) == pytest.approx(911.4e3, rel=1e-4)
     assert float(3 * tension[0] * direction[2, 0]) == pytest.approx(-1.607716e6, rel=1e-5)
 
