@@ -4,11 +4,11 @@ import dataclasses
 import math
 from dataclasses import dataclass
 
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Array, Float
 
 from calibration.campaign.stated_sea import Sea
+from jaxhydro.quick_jit import as_data, on_device, quick_jit
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.directional_spectrum import SystemsSpectrum, WaveSystem
 from jaxhydro.waves.spreading import equal_energy_shares, spread_angle
@@ -53,9 +53,14 @@ class StatedDirections:
             waves: First-order components of the record.
             position: Position of the gauge (m).
         """
-        turned = dataclasses.replace(waves, heading=jnp.asarray(self.headings(waves)))
-        gauge = jnp.asarray(position, float)
-        return dataclasses.replace(turned, phase=waves.phase + gauge @ (turned.vector() - waves.vector()))
+        turned = dataclasses.replace(waves, heading=on_device(self.headings(waves)))
+        return dataclasses.replace(turned, phase=_phase_at_gauge(waves, turned, as_data(position)))
+
+
+@quick_jit
+def _phase_at_gauge(waves: Components, turned: Components, gauge: Float[Array, "2"]) -> Float[Array, " w"]:
+    """Phases (rad) with which turned waves have the elevation of the others at a gauge."""
+    return waves.phase + gauge @ (turned.vector() - waves.vector())
 
 
 def stated_directions(sea: Sea, scale: float) -> StatedDirections | None:

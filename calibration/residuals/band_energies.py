@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from jaxhydro.analysis.spectral import SEGMENT, band_weights
+from jaxhydro.quick_jit import on_device
 
 CELLS_PER_BAND = 8  # at most
 MIN_CELL_CYCLES = 10.0  # width of a cell times the length of the record
@@ -65,14 +66,14 @@ def energies_of(x: Float[np.ndarray, " n"], step: float, low: float, high: float
     weight = np.zeros((len(cells), max(made[i].first + len(made[i].weight) for i in cells) - first))
     for row, i in zip(weight, cells):
         row[made[i].first - first :][: len(made[i].weight)] = made[i].weight
-    starts, taper = jnp.asarray(made[0].starts), jnp.asarray(made[0].window)
-    return BandEnergies(starts, taper, jnp.asarray(weight), jnp.asarray(measured[cells]), first)
+    starts, taper = on_device(made[0].starts), on_device(made[0].window)
+    return BandEnergies(starts, taper, on_device(weight), on_device(measured[cells]), first)
 
 
 def joined_bands(parts: Sequence[BandEnergies]) -> BandEnergies:
     """Join bands of one motion."""
     first = min(part.first for part in parts)
     end = max(part.first + part.weight.shape[1] for part in parts)
-    rows = [jnp.pad(part.weight, ((0, 0), (part.first - first, end - part.first - part.weight.shape[1]))) for part in parts]
-    measured = jnp.concatenate([part.measured for part in parts])
-    return BandEnergies(parts[0].starts, parts[0].window, jnp.concatenate(rows), measured, first)
+    rows = [np.pad(part.weight, ((0, 0), (part.first - first, end - part.first - part.weight.shape[1]))) for part in parts]
+    measured = np.concatenate([part.measured for part in parts])
+    return BandEnergies(parts[0].starts, parts[0].window, on_device(np.concatenate(rows)), on_device(measured), first)

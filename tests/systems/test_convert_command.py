@@ -8,11 +8,13 @@ import jax.numpy as jnp
 import numpy as np
 import pandas as pd
 import pytest
+from one_program import one_program
 from test_cli import run
 
 import jaxhydro as jh
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.interop.openfast_deck import read_openfast_deck
+from jaxhydro.loads import CatenaryLines
 from jaxhydro.platform.catenary_build import catenary_lines
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.mooring_schema import StiffnessMatrix
@@ -72,7 +74,8 @@ def test_the_public_deck_of_the_15_mw_platform() -> None:
     conversion = read_openfast_deck(IEA15)
     platform, mine = Platform.model_validate(conversion.platform), load_platform("volturnus-s")
     assert isinstance(platform.mooring, Catenary) and isinstance(mine.mooring, StiffnessMatrix)
-    tension, direction = catenary_lines(platform.mooring, platform.water).tension(jnp.zeros(6), jnp.eye(3))
+    lines = catenary_lines(platform.mooring, platform.water)
+    tension, direction = map(np.asarray, one_program(CatenaryLines.tension)(lines, np.zeros(6), np.eye(3)))
     assert float(tension @ direction[2]) == pytest.approx(mine.mooring.preload[2], rel=5e-3)
     assert np.asarray(tension) == pytest.approx(2437e3, rel=5e-3)  # N, NREL/TP-5000-76773
     assert platform.hydrostatics.displaced_volume == pytest.approx(mine.hydrostatics.displaced_volume, rel=1e-4)

@@ -11,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from one_program import one_program
 
 import jaxhydro as jh
 from calibration import calibrate
@@ -214,14 +215,15 @@ def test_a_model_that_sinks_says_so() -> None:
 
 def test_what_has_entered() -> None:
     """Nothing at the surface and above, the depth below, one smooth curve between; its slope is at most 1.6."""
-    depth = jnp.linspace(-1.0, 2.0, 3001)
-    value = entered(depth, 0.5)
-    slope = jax.vmap(jax.grad(lambda x: entered(x, 0.5)))(depth)
-    assert (np.asarray(value)[depth <= 0] == 0).all()
-    assert_allclose(np.asarray(value)[depth > 0.5], np.asarray(depth)[depth > 0.5], rtol=1e-12)
-    assert_allclose(np.gradient(np.asarray(value), np.asarray(depth)), slope, atol=0.02)
-    assert float(slope.min()) >= 0 and float(slope.max()) < 1.6
-    assert float(covered(jnp.asarray(0.0), 0.5)) == 0 and float(covered(jnp.asarray(0.6), 0.5)) == 1
+    depth = np.linspace(-1.0, 2.0, 3001)
+    value = np.asarray(one_program(entered)(depth, 0.5))
+    slope = np.asarray(one_program(jax.vmap(jax.grad(lambda x: entered(x, 0.5))))(depth))
+    assert (value[depth <= 0] == 0).all()
+    assert_allclose(value[depth > 0.5], depth[depth > 0.5], rtol=1e-12)
+    assert_allclose(np.gradient(value, depth), slope, atol=0.02)
+    assert slope.min() >= 0 and slope.max() < 1.6
+    share = one_program(covered)
+    assert float(share(0.0, 0.5)) == 0 and float(share(0.6, 0.5)) == 1
 
 
 @pytest.mark.slow
