@@ -73,7 +73,7 @@ def regular_wave(
     if order < 1:
         raise ValueError(f"the order of a regular wave is 1 or more, found {order}")
     omega = 2 * math.pi / period
-    wave = components(on_device([0.5 * height]), on_device([omega]), environment, heading=heading, phase=phase)
+    wave = components(jnp.array([0.5 * height]), on_device([omega]), environment, heading=heading, phase=phase)
     k, depth = float(np.asarray(wave.wavenumber)[0]), float(environment.depth)
     _check_breaking(height, period, k, depth, 1.0 if order <= 2 else MAX_LENGTHENING)
     if order > 2:
