@@ -90,7 +90,7 @@ def _layout(rows: list[Row], uncommented: list[Row], delimiter: str | None) -> L
         return len(cells) == width and any(values) and all(not cell or _is_value(cell, delimiter) for cell in values)
 
     first = next((i for i, line in enumerate(lines) if measured(line)), 0)
-    last = max((i for i, line in enumerate(lines) if measured(line)), default=len(lines) - 1)
+    last = next((i for i in reversed(range(len(lines))) if measured(lines[i])), len(lines) - 1)
     while last + 1 < len(lines) and not _is_sentence(lines[last + 1], delimiter, numeric):
         last += 1  # a damaged row, which is told
     if any(not _is_sentence(line, delimiter, numeric) for line in lines[last + 1 :]):
