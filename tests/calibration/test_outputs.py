@@ -4,6 +4,7 @@ import copy
 import json
 import os
 import re
+import shutil
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -294,8 +295,8 @@ def test_an_old_result_stays_when_the_last_move_fails(result, tmp_path, monkeypa
     assert contents(tmp_path) == before
 
 
-def test_a_new_result_replaces_the_old_one_and_nothing_else(result: Calibration, tmp_path: Path) -> None:
-    folder = write_calibration(result, tmp_path / "out")
+def test_a_new_result_replaces_the_old_one_and_nothing_else(result: Calibration, written: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(written, tmp_path / "out")
     write_report(folder)
     (folder / "figures" / "mine.png").write_bytes(b"keep")
     (folder / "notes.txt").write_text("keep")

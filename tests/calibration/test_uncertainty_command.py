@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_cli import cache, run  # noqa: F401
+from fake_calibration import fake_calibration
+from test_cli import cache, run, small_campaign  # noqa: F401
 from test_uncertainty import FREE, campaign_of
 
 from calibration import calibrate, load_campaign
@@ -63,39 +64,55 @@ def test_what_is_written_is_what_python_finds(ship: tuple[Path, Path, Likelihood
     assert "makes a page of them" in said
 
 
-@pytest.mark.slow
-def test_what_does_not_fit_together_is_told(ship: tuple[Path, Path, Likelihood], tmp_path: Path) -> None:
-    folder, results, _ = ship
+@pytest.fixture(scope="module")
+def fake(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A campaign's folder, and that of results without a fit."""
+    folder = small_campaign(tmp_path_factory.mktemp("fake") / "campaign")
+    made = fake_calibration(folder, {"pontoon.Ca_z": 1.87, "pontoon.Cd_z": 4.9})
+    return folder, write_calibration(made, folder.parent / "results", figures=False)
+
+
+def told_of(folder: Path, saved: dict, tmp_path: Path, *words: object) -> str:
+    """What the command says of a calibration.json that it refuses."""
+    path, out = tmp_path / "calibration.json", tmp_path / "out"
+    path.write_text(json.dumps(saved))
+    text = run("uncertainty", folder, "--calibration", path, *words, "--out", out, status=2)
+    assert not out.exists()
+    return text
+
+
+def test_what_does_not_fit_together_is_told(fake: tuple[Path, Path], tmp_path: Path) -> None:
+    folder, results = fake
     saved = json.loads((results / "calibration.json").read_text())
 
     def said(*words: object, **changed: object) -> str:
-        path = tmp_path / "calibration.json"
-        path.write_text(json.dumps(saved | changed))
-        out = tmp_path / "out"
-        text = run("uncertainty", folder, "--calibration", path, *words, "--out", out, status=2)
-        assert not out.exists()
-        return text
+        return told_of(folder, saved | changed, tmp_path, *words)
 
-    assert "'added_mass.A45'" in said("--profile", "added_mass.A45") and "added_mass.A44" in said("--profile", "added_mass.A45")
+    assert "'pontoon.Ca_y'" in said("--profile", "pontoon.Ca_y") and "pontoon.Ca_z" in said("--profile", "pontoon.Ca_y")
     assert "For 95 % say 0.95" in said("--level", 95)
     assert "40 resamplings or more" in said("--bootstrap", 10)
     assert "It is another campaign's calibration" in said(campaign="another")
     assert "Calibrate this platform first" in said(platform="another")
     tests = {id: test | {"kind": "irregular"} for id, test in saved["tests"].items()}
     assert "a calibration to free decays alone" in said(tests=tests)
-    assert "calibrate again" in said(tests=dict(list(saved["tests"].items())[:1]))
+    assert "calibrate again" in said(tests={"heave-9": saved["tests"]["heave-1"]})
     assert "a finished calibration" in said(baseline=saved["baseline"] | {"converged": False})
-    foreign = {**saved["baseline"]["parameters"], "added_mass.A45": saved["baseline"]["parameters"]["added_mass.A44"]}
-    assert "added_mass.A45" in said(baseline=saved["baseline"] | {"parameters": foreign})
-    moved = json.loads(json.dumps(saved["baseline"]))
-    moved["parameters"]["added_mass.A44"]["value"] *= 1.1
-    assert "where a fit to this campaign's decays ends" in said(baseline=moved)
+    foreign = {**saved["baseline"]["parameters"], "pontoon.Ca_y": saved["baseline"]["parameters"]["pontoon.Ca_z"]}
+    assert "pontoon.Ca_y" in said(baseline=saved["baseline"] | {"parameters": foreign})
     gone = ("--calibration", tmp_path / "none.json", "--out", tmp_path / "o")
     assert "no such file" in run("uncertainty", folder, *gone, status=2)
 
 
-def test_results_do_not_stand_beside_others(ship: tuple[Path, Path, Likelihood]) -> None:
+@pytest.mark.slow
+def test_values_that_a_fit_does_not_end_at_are_told(ship: tuple[Path, Path, Likelihood], tmp_path: Path) -> None:
     folder, results, _ = ship
+    saved = json.loads((results / "calibration.json").read_text())
+    saved["baseline"]["parameters"]["added_mass.A44"]["value"] *= 1.1
+    assert "where a fit to this campaign's decays ends" in told_of(folder, saved, tmp_path)
+
+
+def test_results_do_not_stand_beside_others(fake: tuple[Path, Path]) -> None:
+    folder, results = fake
     before = sorted(results.iterdir())
     text = run("uncertainty", folder, "--calibration", results, "--out", results, status=2)
     assert "--out" in text and "the results of a calibration" in text

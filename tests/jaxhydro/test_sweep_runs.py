@@ -64,6 +64,21 @@ def whole(file) -> Path:
     return out
 
 
+@pytest.fixture(scope="module")
+def stored(file) -> Path:
+    """A finished sweep of which one run was simulated, here: the others are that one, larger, or fail."""
+    out = file.parent / "stored"
+    opened(out, prepared(load_sweep(file), "sweep"))
+    setup, store = setup_in(out / INPUTS), Store(out)
+    first = run_outcome(setup, setup.plan.run(0))
+    assert not isinstance(first, str)
+    for number in range(RUNS):
+        run = setup.plan.run(number)
+        larger = type(first)(*((1 + 0.01 * number) * values for values in first))
+        store.write(run, run_outcome(setup, run) if number >= 16 else larger)
+    return out
+
+
 def command(*words: object, status: int) -> str:
     result = CliRunner().invoke(cli.app, [str(word) for word in words])
     assert result.exit_code == status, result.output
@@ -124,47 +139,47 @@ def test_a_run_is_what_simulate_does_with_the_same_options(whole, tmp_path) -> N
     assert float(xr.corr(line, kept.sel(channel="surge"))) < -0.9
 
 
-def test_the_store_says_what_it_holds(whole) -> None:
-    with xr.open_zarr(whole / RESULTS) as data:
+def test_the_store_says_what_it_holds(stored) -> None:
+    with xr.open_zarr(stored / RESULTS) as data:
         assert dict(data.sizes) | {"case": 3, "seed": 8, "time": 301, "exponent": 3} == dict(data.sizes)
         assert data.hs.values.tolist() == [1.5, 3.0, BREAKING["hs"]] and data.hs.units == "m"
         assert data.probability.values == pytest.approx([0.6, 0.35, 0.05])
         assert np.isnan(data.gamma.values).all() and data.gamma.dims == ("case",)
-        assert data.spectrum_share.values == pytest.approx(shares_in_band(setup_in(whole / INPUTS).plan))
+        assert data.spectrum_share.values == pytest.approx(shares_in_band(setup_in(stored / INPUTS).plan))
         assert data.attrs["source"].startswith("jaxhydro") and len(data.attrs["fingerprint"]) == 16
         assert data.statistics.encoding["chunks"][:2] == (1, 1)
 
 
-def test_a_run_that_cannot_be_is_recorded_and_the_others_go_on(whole) -> None:
-    found = results(whole)
+def test_a_run_that_cannot_be_is_recorded_and_the_others_go_on(stored) -> None:
+    found = results(stored)
     assert (found["status"] == [[DONE], [DONE], [FAILED]]).all()
     assert all("break" in reason for reason in found["reason"][2]) and not found["reason"][:2].any()
     assert np.isfinite(found["statistics"][:2, ..., :4]).all() and np.isnan(found["statistics"][2]).all()
 
 
-def test_the_command_writes_what_the_life_is(file, whole) -> None:
+def test_the_command_writes_what_the_life_is(file, stored) -> None:
     """On a finished store: tables and figures, and nothing is simulated."""
-    before = chunks(whole)
-    text = command("sweep", file, "--out", whole, status=3)
-    assert chunks(whole) == before
+    before = chunks(stored)
+    text = command("sweep", file, "--out", stored, status=3)
+    assert chunks(stored) == before
     assert "24 of 24 runs: nothing is left to do" in text and "8 of 24 runs failed" in text
     assert "no run is left have 5.00% of the life" in text
     assert text.count("break above") == 2  # noted before, and one line for all runs that failed alike
     assert "Hs 20 m, Tp 9 s, heading 0 deg, 8 seeds: expected a sea that does not break" in text
-    document = json.loads((whole / "sweep.json").read_text())
+    document = json.loads((stored / "sweep.json").read_text())
     follows(document, "SweepResults")
     assert document["runs"] == {"total": 24, "done": 16, "failed": 8}
     (failure,) = document["failures"]
     assert "break" in failure["reason"] and failure["runs"] == 8 and failure["seeds"] == list(range(8))
     assert (document["sea_states"], document["cases"], document["headings"]) == (3, 3, [{"heading": 0.0, "probability": 1.0}])
     assert document["options"]["duration"] == 150.0 and document["options"]["order"] == 1
-    with xr.open_zarr(whole / RESULTS) as data:
+    with xr.open_zarr(stored / RESULTS) as data:
         deviation = data.statistics.sel(channel="surge", statistic="standard_deviation").values[:2]
     expected = np.sqrt((0.6 * (deviation[0] ** 2).mean() + 0.35 * (deviation[1] ** 2).mean()) / 0.95)
     assert document["lifetime"]["surge"]["standard_deviation"] == pytest.approx(expected)
-    rows = (whole / "lifetime.csv").read_text().splitlines()
+    rows = (stored / "lifetime.csv").read_text().splitlines()
     assert rows[0].startswith("channel,unit,mean") and rows[2].startswith("surge,m,") and len(rows) == 8
-    assert all((whole / name).stat().st_size > 5000 for name in ("scatter.png", "exceedance.png"))
+    assert all((stored / name).stat().st_size > 5000 for name in ("scatter.png", "exceedance.png"))
 
 
 # --- results do not depend on how they came about
@@ -211,7 +226,7 @@ def test_a_sweep_that_is_told_to_end_says_that_it_can_go_on(file, tmp_path) -> N
     assert "the same command goes on" in rest and 1 <= len(chunks(tmp_path / "o")) < RUNS
 
 
-def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatch) -> None:
+def test_a_stop_at_any_time_says_what_is_there(file, stored, tmp_path, monkeypatch) -> None:
     """Before the runs and after them; also where a library's callback swallowed the signal."""
 
     def stop(*_) -> None:
@@ -224,9 +239,9 @@ def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatc
 
     with monkeypatch.context() as late:  # all is written: it is done
         late.setattr("jaxhydro.cli.sweep_command._print_results", stop)
-        assert f"Results are in {whole}" in command("sweep", file, "--out", whole, status=3)
+        assert f"Results are in {stored}" in command("sweep", file, "--out", stored, status=3)
     monkeypatch.setattr("jaxhydro.cli.sweep_command.results_of", stop)
-    assert f"stopped; what is done is in {whole / RESULTS}" in command("sweep", file, "--out", whole, status=130)
+    assert f"stopped; what is done is in {stored / RESULTS}" in command("sweep", file, "--out", stored, status=130)
     before = signal.getsignal(signal.SIGINT)
     monkeypatch.setattr("jaxhydro.sweep.prepared_sweep.impossible", swallowed)
     assert "stopped; nothing was written" in command("sweep", file, "--out", tmp_path / "o", status=130)
@@ -235,12 +250,12 @@ def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatc
     assert not (tmp_path / "o").exists() and signal.getsignal(signal.SIGINT) is before
 
 
-def test_two_sweeps_do_not_write_to_one_folder(file, whole) -> None:
-    before = chunks(whole)
-    with locked_folder(whole):
-        text = command("sweep", file, "--out", whole, "--restart", status=2)
+def test_two_sweeps_do_not_write_to_one_folder(file, stored) -> None:
+    before = chunks(stored)
+    with locked_folder(stored):
+        text = command("sweep", file, "--out", stored, "--restart", status=2)
     assert "--out: expected a folder of its own" in text and "another sweep writes now" in text
-    assert chunks(whole) == before
+    assert chunks(stored) == before
 
 
 def test_a_scheduler_that_is_lost_is_told(file, tmp_path, monkeypatch) -> None:
@@ -325,33 +340,33 @@ def test_runs_at_once_are_runs_one_by_one(whole, order) -> None:
         ({"scatter": SWEEP["scatter"][:1]}, "scatter: expected 3 sea states, as in the runs that are there, found 1"),
     ],
 )
-def test_another_sweep_is_not_mixed_in(whole, tmp_path, changes, words) -> None:
-    before = chunks(whole)
-    text = command("sweep", written(tmp_path, **changes), "--out", whole, status=2)
+def test_another_sweep_is_not_mixed_in(stored, tmp_path, changes, words) -> None:
+    before = chunks(stored)
+    text = command("sweep", written(tmp_path, **changes), "--out", stored, status=2)
     assert words in text and "--restart begins anew" in text
-    assert chunks(whole) == before
+    assert chunks(stored) == before
 
 
-def test_another_platform_is_not_mixed_in(whole, tmp_path) -> None:
+def test_another_platform_is_not_mixed_in(stored, tmp_path) -> None:
     file = written(tmp_path)
     (tmp_path / "buoy.yaml").write_text((tmp_path / "buoy.yaml").read_text().replace("Cd_t: 1.0", "Cd_t: 1.1"))
-    assert "the platform file of the runs that are there, found another" in command("sweep", file, "--out", whole, status=2)
+    assert "the platform file of the runs that are there, found another" in command("sweep", file, "--out", stored, status=2)
 
 
-def test_another_program_is_not_mixed_in(file, whole, monkeypatch) -> None:
+def test_another_program_is_not_mixed_in(file, stored, monkeypatch) -> None:
     """Other source code of either package, or another version of what computes."""
-    before, known = chunks(whole), fingerprints.version
+    before, known = chunks(stored), fingerprints.version
     with monkeypatch.context() as other:
         other.setattr(fingerprints, "sources", lambda: "of a load that was changed")
-        text = command("sweep", file, "--out", whole, status=2)
+        text = command("sweep", file, "--out", stored, status=2)
         assert "source code: expected that which made the runs that are there, found another. Another --out" in text
     monkeypatch.setattr(fingerprints, "version", lambda name: "99.0" if name == "diffrax" else known(name))
-    text = command("sweep", file, "--out", whole, status=2)
+    text = command("sweep", file, "--out", stored, status=2)
     assert f"diffrax: expected {known('diffrax')}, which made the runs that are there, found 99.0" in text
-    assert chunks(whole) == before
+    assert chunks(stored) == before
 
 
-def test_a_store_of_an_earlier_format_is_refused(file, whole, tmp_path) -> None:
+def test_a_store_of_an_earlier_format_is_refused(file, tmp_path) -> None:
     """Only zarr version 3 is read: version 2 knows a codec that reads pickles."""
     made, out = prepared(load_sweep(file), "sweep"), tmp_path / "o"
     assert not opened(out, made)
