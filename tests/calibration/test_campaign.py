@@ -5,6 +5,7 @@ import gzip
 import io
 import json
 import struct
+from functools import cache
 from pathlib import Path
 
 import h5py
@@ -42,6 +43,14 @@ SURGE = 3 * np.exp(-0.02 * T) * np.cos(2 * np.pi * T / 6)
 PITCH = 2 * np.exp(-0.03 * T) * np.sin(2 * np.pi * T / 5)
 RNG = np.random.default_rng(7)
 NOISE = RNG.normal(size=(4, 4000))
+
+
+@cache
+def shared(name):
+    """A campaign of ../shared, read once."""
+    if not (SHARED / name).is_dir():
+        pytest.skip(f"{SHARED / name} is not on this machine")
+    return load_campaign(SHARED / name)
 
 
 def manifest(**changes):
@@ -92,9 +101,7 @@ def failure(function, *arguments):
 
 @pytest.mark.parametrize("name", MEASURED + MADE)
 def test_shared_campaigns_load_without_errors(name):
-    if not (SHARED / name).is_dir():
-        pytest.skip(f"{SHARED / name} is not on this machine")
-    campaign = load_campaign(SHARED / name)
+    campaign = shared(name)
     assert len(campaign.records) == len(campaign.manifest.tests)
     assert all(np.all(np.diff(record.time) > 0) for record in campaign.records)
     assert not [finding for finding in campaign.findings if finding.severity == "error"]
@@ -105,10 +112,7 @@ def test_shared_campaigns_load_without_errors(name):
 
 
 def test_focal_c4_is_zeroed_by_its_rest_and_its_clock_is_noticed():
-    folder = SHARED / "measured/focal-c4"
-    if not folder.is_dir():
-        pytest.skip(f"{folder} is not on this machine")
-    campaign = load_campaign(folder / "campaign.yaml")
+    campaign = shared("measured/focal-c4")
     assert abs(campaign.record("rest").values["heave"].mean()) < 1e-12
     assert campaign.record("offset-3").values["surge"].mean() == pytest.approx(22.4, abs=0.1)
     assert campaign.record("surge-release").time[0] == pytest.approx(1891.3, abs=0.1)
@@ -117,20 +121,14 @@ def test_focal_c4_is_zeroed_by_its_rest_and_its_clock_is_noticed():
 
 
 def test_focal_c2_has_three_windows_of_one_file_and_its_wave():
-    folder = SHARED / "measured/focal-c2"
-    if not folder.is_dir():
-        pytest.skip(f"{folder} is not on this machine")
-    first, second, third = load_campaign(folder).records
+    first, second, third = shared("measured/focal-c2").records
     assert second.time[0] - first.time[-1] < 1 and third.time[0] - second.time[-1] < 1 and third.time[0] > 7134
     assert [4 * r.wave.std() for r in (first, second, third)] == pytest.approx([2.7, 5.9, 7.8], abs=0.1)
     assert abs(first.values["heave"].mean()) < 0.1  # the raw record sits at -20 m
 
 
 def test_estimated_noise_is_what_was_put_into_the_made_campaigns():
-    folder = SHARED / MADE[0]
-    if not folder.is_dir():
-        pytest.skip(f"{folder} is not on this machine")
-    for record in load_campaign(folder).records:
+    for record in shared(MADE[0]).records:
         assert record.noise["surge"] == 0.01 and record.noise["pitch"] == pytest.approx(np.deg2rad(0.01))
         for channel in ("surge", "heave", "pitch"):
             assert noise_level(record.time, record.values[channel]) == pytest.approx(record.noise[channel], rel=0.12)

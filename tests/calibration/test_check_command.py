@@ -1,13 +1,13 @@
 """`jaxhydro check`: what a campaign holds, its natural periods beside the model's, and what to look at first."""
 
 import math
-import shutil
 from importlib import resources
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
+from test_cli import small_campaign
 from typer.testing import CliRunner
 
 from calibration.campaign.load_campaign import load_campaign
@@ -49,18 +49,17 @@ def test_a_period_far_off_is_named(demo):
 
 
 def test_command_draws_the_hull_and_every_record(tmp_path):
-    out = tmp_path / "check"
-    result = RUNNER.invoke(cli.app, ["check", str(DEMO), "--out", str(out)], env={"COLUMNS": "160"})
+    out, campaign = tmp_path / "check", small_campaign(tmp_path / "few", ("surge-1", "heave-1"))
+    result = RUNNER.invoke(cli.app, ["check", str(campaign), "--out", str(out)], env={"COLUMNS": "160"})
     assert result.exit_code == 0, result.output
     assert "surge from 3.01 m" in result.output and "nothing looks wrong" in result.output
-    assert {path.name for path in out.iterdir()} == {"hull.png", *(f"record-{p.stem}.png" for p in DEMO.glob("*.csv"))}
+    assert {path.name for path in out.iterdir()} == {"hull.png", "record-surge-1.png", "record-heave-1.png"}
     with Image.open(out / "hull.png") as image:
         assert min(image.size) > 500
 
 
 def test_command_says_that_periods_are_off(tmp_path):
-    folder = tmp_path / "wrong"
-    shutil.copytree(DEMO, folder)
+    folder = small_campaign(tmp_path / "wrong", ("surge-1",))
     text = (folder / "platform.yaml").read_text()
     assert text.count("stiffness: 45000.0") == 3
     (folder / "platform.yaml").write_text(text.replace("stiffness: 45000.0", "stiffness: 20000.0"))
@@ -70,8 +69,7 @@ def test_command_says_that_periods_are_off(tmp_path):
 
 
 def test_a_platform_out_of_balance_or_not_one_s_own_is_named(tmp_path):
-    folder = tmp_path / "new"
-    shutil.copytree(DEMO, folder)
+    folder = small_campaign(tmp_path / "new")
     text = (folder / "platform.yaml").read_text()
     assert "mass: 20054283" in text
     (folder / "platform.yaml").write_text(text.replace("mass: 20054283", "mass: 20554283"))
@@ -83,8 +81,7 @@ def test_a_platform_out_of_balance_or_not_one_s_own_is_named(tmp_path):
 
 @pytest.mark.parametrize("command", ["check", "calibrate", "diagnose"])
 def test_an_unstable_platform_is_refused(tmp_path, command):
-    folder = tmp_path / "top-heavy"
-    shutil.copytree(DEMO, folder)
+    folder = small_campaign(tmp_path / "top-heavy")
     text = (folder / "platform.yaml").read_text()
     assert "centre_of_mass: [0.0, 0.0, -2.4]" in text
     (folder / "platform.yaml").write_text(text.replace("[0.0, 0.0, -2.4]", "[0.0, 0.0, 40.0]"))
@@ -95,7 +92,7 @@ def test_an_unstable_platform_is_refused(tmp_path, command):
 
 
 def test_restoring_that_a_ship_leaves_out_is_named(tmp_path):
-    shutil.copytree(DEMO, tmp_path / "ship")
+    small_campaign(tmp_path / "ship")
     (tmp_path / "ship" / "platform.yaml").write_text(
         "{name: ship, water: {density: 1000.0, depth: 3.0}, members: [], mooring: {kind: none}, hydrostatics: {C44: 1e9},"
         "rigid_body: {mass: 2e7, centre_of_mass: [0, 0, 1.0], inertia: {Ixx: 1e10, Iyy: 1e10, Izz: 1e10}}}"

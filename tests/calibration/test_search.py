@@ -1,6 +1,7 @@
 """Multi-start search: the coefficients of a simulated decay from a far start; seeds, budgets, stops, bad input."""
 
 import dataclasses
+import json
 import math
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from test_calibration import SHIP, SHIP_TRUE, model_of, roll_decay, write
+from test_cli import cache, run  # noqa: F401
 
 import jaxhydro as jh
 from calibration import load_campaign
@@ -16,7 +18,7 @@ from calibration.fitting.decay_fit import fit_of_decays, run_fit
 from calibration.fitting.progress import Progress
 from calibration.global_search.multistart import MultiStart
 from calibration.global_search.objective import coordinates, ranges
-from calibration.global_search.run_search import Found, SearchInterrupted, search, set_up_search
+from calibration.global_search.run_search import DEFAULT_FACTOR, Found, SearchInterrupted, search, set_up_search
 from calibration.global_search.task import FAILED_OBJECTIVE, Budget, Task, even_batch
 from calibration.residuals.decays import first_guess
 from jaxhydro.errors import InputError
@@ -27,14 +29,14 @@ ENOUGH = Budget(seconds=60.0, simulations=3000.0, objective=0.005)  # the noise 
 LABELS = list(SHIP_TRUE)
 
 
-def far_campaign(folder: Path) -> Campaign:
+def far_campaign(folder: Path, **more) -> Campaign:
     """A noisy roll decay of a body without members, its sensor off by OFFSET."""
     time, roll = roll_decay(12.0, 30.0)
     noisy = roll + OFFSET + NOISE * np.random.default_rng(3).standard_normal(len(time))
     tests = {"roll": ({"kind": "decay", "degree_of_freedom": "roll", "use": "fit"}, time, {"roll": noisy})}
     # the declared values are far from the truth, and not in the middle of what is searched
     document = SHIP | {"added_mass": {"A44": 60.0}, "linear_damping": {"B44": 12.0}, "quadratic_damping": {"B44": 5.0}}
-    return load_campaign(write(folder, document, tests, noise={"roll": NOISE}))
+    return load_campaign(write(folder, document, tests, noise={"roll": NOISE}, **more))
 
 
 @pytest.fixture(scope="module")
@@ -90,6 +92,7 @@ def test_a_budget_of_seconds_ends_a_search(campaign: Campaign) -> None:
     assert one.ended == "budget" and 1.0 <= one.seconds < 2.0
 
 
+@pytest.mark.slow
 def test_multi_start_settles_where_the_truth_is(campaign: Campaign) -> None:
     said: list[Progress] = []
     one = search(campaign, starts=STARTS, finalists=1, seed=3, progress=said.append)
@@ -135,6 +138,18 @@ def test_j_is_the_contracts_and_free_of_offsets(campaign: Campaign) -> None:
     assert task.simulate(at)[0] == pytest.approx(fit.decays.objective(), rel=1e-6)
     moved = fit.unknowns.own.at[0, 2].add(1.0)
     assert Task(problem, records, moved, Budget()).simulate(at)[0] == pytest.approx(fit.decays.objective(), rel=1e-6)
+
+
+def test_the_command_calibrates_from_end_to_end(campaign: Campaign, tmp_path: Path) -> None:
+    """Between the bounds of the searches: the program is theirs."""
+    bounds = {label: list(ends) for label, ends in ranges(jh.build(campaign.platform), LABELS, {}, DEFAULT_FACTOR, "x").items()}
+    bounded = far_campaign(tmp_path / "ship", calibrate={"bounds": bounds})
+    assert "converged after" in run("calibrate", bounded.folder, "--no-figures", "--out", tmp_path / "o")
+    read = json.loads((tmp_path / "o" / "calibration.json").read_text())["baseline"]
+    assert set(read["parameters"]) == set(SHIP_TRUE) and read["converged"]
+    error = read["error"]["roll"]["roll"]
+    assert error["relative"] < 0.1 < error["before"]["relative"]
+    assert read["parameters"]["added_mass.A44"]["value"] == pytest.approx(SHIP_TRUE["added_mass.A44"], rel=0.01)
 
 
 def test_a_simulation_without_a_number_counts_as_a_bad_one(campaign: Campaign) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fake_diagnosis import fake_diagnosis
+from test_cli import small_campaign
 from test_outputs import Page, changed
 from typer.testing import CliRunner
 
@@ -42,6 +43,12 @@ def result() -> Diagnosis:
 @pytest.fixture(scope="module")
 def written(result: Diagnosis, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_diagnosis(result, tmp_path_factory.mktemp("results"), figures=False)
+
+
+@pytest.fixture(scope="module")
+def one_decay(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A campaign that is soon read."""
+    return small_campaign(tmp_path_factory.mktemp("small") / "campaign")
 
 
 # --- the command
@@ -107,7 +114,7 @@ def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path
         ("bad", 2, "tests: expected at least one, found none", False),
     ],
 )
-def test_what_does_not_converge(searching, outcome, status, said, written, tmp_path) -> None:
+def test_what_does_not_converge(searching, one_decay, outcome, status, said, written, tmp_path) -> None:
     good = fake_diagnosis()
     stopped = Interrupted(None)
     stopped.partial = good  # type: ignore[assignment]
@@ -121,7 +128,7 @@ def test_what_does_not_converge(searching, outcome, status, said, written, tmp_p
         "not finite": replace(good, baseline=changed(good.baseline, 0, simulated=np.full(2400, np.nan))),
         "bad": InputError("campaign.yaml", [Problem("tests", "at least one", "none")]),
     }[outcome]
-    assert said in run("diagnose", DEMO, "--no-figures", "--out", tmp_path / "o", status=status)
+    assert said in run("diagnose", one_decay, "--no-figures", "--out", tmp_path / "o", status=status)
     assert (tmp_path / "o").exists() == written and not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
     if written:
         content = json.loads((tmp_path / "o" / "diagnosis.json").read_text())
@@ -130,32 +137,32 @@ def test_what_does_not_converge(searching, outcome, status, said, written, tmp_p
         assert marked in Page(write_report(tmp_path / "o").read_text()).text
 
 
-def test_a_stopped_search_does_not_say_that_nothing_is_missing(searching, result: Diagnosis, tmp_path: Path) -> None:
+def test_a_stopped_search_does_not_say_that_nothing_is_missing(searching, one_decay, result: Diagnosis, tmp_path: Path) -> None:
     """Only a whole one does; what a stopped one had found stays found."""
     run_with = {"nothing_missing": replace(result, verdict="nothing_missing", effects=()), "found": result}
     for verdict, partial in run_with.items():
         stopped = Interrupted(None)
         stopped.partial = partial  # type: ignore[assignment]
         searching["it"] = stopped
-        text = run("diagnose", DEMO, "--no-figures", "--out", tmp_path / verdict, status=3)
+        text = run("diagnose", one_decay, "--no-figures", "--out", tmp_path / verdict, status=3)
         saved = read_diagnosis(tmp_path / verdict)
         assert not saved.complete and saved.missing.verdict == ("found" if verdict == "found" else "unexplained")
         ended = "found until the search was stopped" if verdict == "found" else "The search did not come to its end"
         assert ended in text and "nothing that the model lacks" not in text
     searching["it"] = result
-    run("diagnose", DEMO, "--no-figures", "--out", tmp_path / "whole")
+    run("diagnose", one_decay, "--no-figures", "--out", tmp_path / "whole")
     assert read_diagnosis(tmp_path / "whole").complete
 
 
-def test_results_do_not_replace_those_of_other_commands(searching, result: Diagnosis, tmp_path: Path) -> None:
+def test_results_do_not_replace_those_of_other_commands(searching, one_decay, result: Diagnosis, tmp_path: Path) -> None:
     searching["it"] = result
     mine = write_diagnosis(result, tmp_path / "mine", figures=False)
     theirs = write_calibration(result.baseline, tmp_path / "theirs", figures=False)
-    assert "which has the results of a diagnosis" in run("calibrate", DEMO, "--out", mine, status=2)
-    assert "which has the results of a calibration" in run("diagnose", DEMO, "--out", theirs, status=2)
+    assert "which has the results of a diagnosis" in run("calibrate", one_decay, "--out", mine, status=2)
+    assert "which has the results of a calibration" in run("diagnose", one_decay, "--out", theirs, status=2)
     (theirs / "simulated.nc").unlink()
-    assert "which has the results of a calibration" in run("diagnose", DEMO, "--out", theirs, status=2)
-    run("diagnose", DEMO, "--no-figures", "--out", mine)
+    assert "which has the results of a calibration" in run("diagnose", one_decay, "--out", theirs, status=2)
+    run("diagnose", one_decay, "--no-figures", "--out", mine)
     assert "no such folder" in run("diagnose", tmp_path / "none", "--out", tmp_path / "o", status=2)
     assert not (tmp_path / "o").exists()
 
@@ -184,7 +191,9 @@ def test_simulations_have_the_effects_that_were_found(written: Path, tmp_path: P
     assert float(found.values["mass_properties.mass"]) == 1e5 and FORCE in capsys.readouterr().out
 
 
-def test_simulations_have_the_strips_and_seas_that_were_taken(result: Diagnosis, tmp_path, capsys, monkeypatch) -> None:
+def test_simulations_have_the_strips_and_seas_that_were_taken(
+    result: Diagnosis, one_decay, tmp_path, capsys, monkeypatch
+) -> None:
     """In words of a platform file, and said where it says otherwise; seas are a campaign's."""
     simpler, seas = (
         StripConventions(directions="earth", drag_speed="component", centripetal=False),
@@ -211,7 +220,7 @@ def test_simulations_have_the_strips_and_seas_that_were_taken(result: Diagnosis,
     monkeypatch.setattr(
         "calibration.commands.calibrate_command.calibrate", lambda _, **how: begun.append(how["start"]) or result.baseline
     )
-    assert "has directions: earth" in run("calibrate", DEMO, "--start", path, "--out", tmp_path / "o")
+    assert "has directions: earth" in run("calibrate", one_decay, "--start", path, "--out", tmp_path / "o")
     assert begun == [{"column.Ca_t": 1.5}]
     wrong = {"strips": content["strips"] | {"directions": "up"}, "seas": content["seas"] | {"acting": "there"}}
     path.write_text(json.dumps(content | wrong))
