@@ -374,6 +374,7 @@ def test_the_truth_is_within_three_standard_deviations(ship) -> None:
     assert result.objective("fit") == pytest.approx(sum(t.main.relative for t in result.tests if t.use == "fit"))
 
 
+@pytest.mark.slow
 def test_a_sensors_offset_is_found_and_taken_off(ship) -> None:
     tests = {test.id: test for test in ship[0].tests}
     # its standard error is some 1e-5 rad
@@ -383,6 +384,7 @@ def test_a_sensors_offset_is_found_and_taken_off(ship) -> None:
     assert main.measured[0] == pytest.approx(np.radians(6.0), abs=5 * SHIP_NOISE)
 
 
+@pytest.mark.slow
 def test_held_out_records_are_judged_with_the_fitted_coefficients(ship, ship_campaign: Campaign) -> None:
     result, _ = ship
     held = next(test for test in result.tests if test.id == "roll-3")
@@ -398,6 +400,7 @@ def test_held_out_records_are_judged_with_the_fitted_coefficients(ship, ship_cam
         assert without.parameters[label].value == one.value
 
 
+@pytest.mark.slow
 def test_progress_is_reported_iteration_by_iteration(ship) -> None:
     result, said = ship
     assert [p.iteration for p in said] == list(range(1, result.iterations + 1))
@@ -407,6 +410,7 @@ def test_progress_is_reported_iteration_by_iteration(ship) -> None:
     assert said[-1].objective < 0.1 * said[0].objective
 
 
+@pytest.mark.slow
 def test_interruption_gives_what_was_reached(ship_campaign: Campaign) -> None:
     def stop(p: Progress) -> None:
         if p.iteration == 7:
@@ -511,6 +515,7 @@ def test_a_zeroed_record_is_measured_from_the_equilibrium(heave) -> None:
     assert result.parameters["pontoon.Ca_z"].value == pytest.approx(1.87, rel=0.01)
 
 
+@pytest.mark.slow
 def test_what_is_not_free_stays_exactly_as_it_was(heave) -> None:
     result, _ = heave
     declared = model_of(semi())
@@ -519,12 +524,14 @@ def test_what_is_not_free_stays_exactly_as_it_was(heave) -> None:
         assert (float(result.model.values[label]) == float(value)) == (label not in SEMI_TRUE)
 
 
+@pytest.mark.slow
 def test_a_standard_deviation_is_given_where_identifiable(heave, ship) -> None:
     for result in (heave[0], ship[0]):
         for one in result.parameters.values():
             assert (one.standard_deviation is None) == (not one.identifiable)
 
 
+@pytest.mark.slow
 def test_froude_scaled_records_give_the_same_coefficients(heave) -> None:
     full, scaled = heave
     for label, one in full.parameters.items():

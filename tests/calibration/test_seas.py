@@ -135,6 +135,7 @@ def test_a_made_run_comes_back(results):
     assert sea["mismatch"] < MAX_MISMATCH and sea["gauge"] == pytest.approx(GAUGE) and found["warnings"] == []
 
 
+@pytest.mark.slow
 def test_what_is_written(results):
     with xr.open_dataset(results / "simulated.nc") as motion:
         assert motion["measured"].dims == ("test", "channel", "time") and motion["time"].attrs["units"] == "s"
@@ -150,8 +151,13 @@ def test_what_is_written(results):
     assert all((results / name).is_file() for name in listed)
 
 
-def test_results_of_other_commands_stay_apart(results, tmp_path):
+def test_results_of_other_commands_stay_apart(tmp_path):
     """No command spoils another's folder, where files are called alike; a motion.csv alone may be anybody's."""
+    results, tmp_path = tmp_path / "results", tmp_path / "other"
+    for folder in (results, tmp_path):
+        folder.mkdir()
+    for name in ("comparison.json", "simulated.nc"):
+        (results / name).write_text("{}")
     with pytest.raises(InputError, match="the results of a campaign's seas"):
         results_folder(results, "calibration.json", "a-campaign")
     assert results_folder(results, "comparison.json", "a-campaign") == results
@@ -249,9 +255,9 @@ def test_a_record_that_second_order_does_not_follow():
     assert made.mismatch == 0 and any("of the wave record's variance" in note for note in made.notes)
 
 
-def test_decays_are_wanted_where_only_waves_are(made, tmp_path):
+def test_decays_are_wanted_where_only_waves_are(tmp_path):
     """One message, and what else there is to do."""
-    text = failure(made, lambda folder: calibrate(load_campaign(folder)))
+    text = failure(write(tmp_path), lambda folder: calibrate(load_campaign(folder)))
     assert "irregular marked fit" in text and "--tests waves" in text
 
 

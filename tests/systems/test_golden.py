@@ -4,9 +4,8 @@ import pytest
 from golden.commands import CASES, compare, differences
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow if case.slow else ()) for name, case in CASES.items()]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CASES)
 def test_numbers_are_those_kept(name: str) -> None:
     needs = CASES[name].needs
     if needs is not None and not needs.exists():
