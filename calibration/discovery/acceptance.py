@@ -140,7 +140,7 @@ def assess_effect(
     bic = float((before.likelihood - after.likelihood)[study.used].sum()) - len(candidate.labels) * math.log(count)
     held, told = grounds.error_reduction()
     net, clear, matters = grounds.likelihood_gain, significance(study, candidate, after, prior), grounds.relevance()
-    values = {label: study.value(label, after.look.place.x) for label in candidate.positive}
+    values = {label: study.value(label, after.linearisation.point.x) for label in candidate.positive}
     wrong = [label for label, value in values.items() if value < 0 and is_significant(study, label, candidate, after, prior)]
     where = ComparedData.HELD_OUT if grounds.study is study else ComparedData.BLOCKS
     where = where if grounds.unseen else ComparedData.FITTED
@@ -148,7 +148,7 @@ def assess_effect(
     refused = impossible or reason_to_reject(bic, held if told else None, net, clear, matters, where)
     # that it hardly matters is said where nothing else speaks against it
     if refused is None or refused.kind == RefusalKind.NEGLIGIBLE:
-        refused = worsened_motion(study, candidate.dof, before.left, after.left) or refused
+        refused = worsened_motion(study, candidate.dof, before.summary, after.summary) or refused
     return Verdict(bic, held, grounds.unseen, net, clear, matters, refused)
 
 
@@ -222,8 +222,10 @@ def is_significant(study: Study, label: str, candidate: Candidate, state: FitSta
     The only amplitude of an effect always does; one of several has to be two standard deviations away.
     """
     i = study.names.index(label)
-    variance = predict_gain(study, state.look, prior).covariance[state.look.active.index(i), state.look.active.index(i)]
-    return len(candidate.amplitudes) == 1 or abs(float(study.steps(state.look.place.x)[i])) > 2 * math.sqrt(variance)
+    variance = predict_gain(study, state.linearisation, prior).covariance[
+        state.linearisation.active.index(i), state.linearisation.active.index(i)
+    ]
+    return len(candidate.amplitudes) == 1 or abs(float(study.steps(state.linearisation.point.x)[i])) > 2 * math.sqrt(variance)
 
 
 def significance(study: Study, candidate: Candidate, state: FitState, prior: Prior) -> float:
@@ -231,9 +233,9 @@ def significance(study: Study, candidate: Candidate, state: FitState, prior: Pri
 
     Several amplitudes together are expressed as one normal variable (Wald statistic less the extra degrees of freedom).
     """
-    look = state.look
-    columns = [look.active.index(i) for i in study.index(candidate.amplitudes)]
-    covariance = predict_gain(study, look, prior).covariance[np.ix_(columns, columns)]
-    steps = study.steps(look.place.x)[study.index(candidate.amplitudes)]
+    linearisation = state.linearisation
+    columns = [linearisation.active.index(i) for i in study.index(candidate.amplitudes)]
+    covariance = predict_gain(study, linearisation, prior).covariance[np.ix_(columns, columns)]
+    steps = study.steps(linearisation.point.x)[study.index(candidate.amplitudes)]
     wald = float(steps @ pseudo_inverse(covariance) @ steps)
     return math.sqrt(max(wald - len(columns) + 1, 0.0))

@@ -29,24 +29,24 @@ class FitOutcome(NamedTuple):
     """Result of a fit.
 
     Attributes:
-        look: Linearisation at the fitted point.
+        linearisation: Linearisation at the fitted point.
         iterations: Iterations taken.
         settled: Whether the fit converged.
     """
 
-    look: Linearisation
+    linearisation: Linearisation
     iterations: int
     settled: bool
 
 
 def broyden_update(
-    study: Study, look: Linearisation, point: Point, residual: np.ndarray, step: np.ndarray, own_step: np.ndarray
+    study: Study, linearisation: Linearisation, point: Point, residual: np.ndarray, step: np.ndarray, own_step: np.ndarray
 ) -> Linearisation:
     """The linearisation after a step, its slopes corrected to agree with the step (Broyden's update).
 
     Args:
         study: The study.
-        look: Linearisation before the step.
+        linearisation: Linearisation before the step.
         point: The point after the step.
         residual: Residual there, in rows (n,).
         step: Step along the active directions (q,).
@@ -55,24 +55,24 @@ def broyden_update(
     References:
         Broyden 1965, Mathematics of Computation 19, 577-593.
     """
-    weight = row_weights(study, look.residual)
-    missed = residual - linear_residual(study, look, step, own_step)
-    slopes, mine = look.slopes.copy(), look.own.copy()
-    size = (weight[:, None] * look.slopes**2).sum(axis=0) * step
+    weight = row_weights(study, linearisation.residual)
+    missed = residual - linear_residual(study, linearisation, step, own_step)
+    slopes, mine = linearisation.slopes.copy(), linearisation.own.copy()
+    size = (weight[:, None] * linearisation.slopes**2).sum(axis=0) * step
     decays = study.spans[-1].stop if study.spans else 0
     if size @ step > 0:
         slopes[decays:] += np.outer(missed[decays:], size / (size @ step))
     for span, moved in zip(study.spans, own_step):
-        inner = (weight[span, None] * look.own[span] ** 2).sum(axis=0) * moved
+        inner = (weight[span, None] * linearisation.own[span] ** 2).sum(axis=0) * moved
         total = size @ step + inner @ moved
         if total > 0:
             slopes[span] += np.outer(missed[span], size / total)
             mine[span] += np.outer(missed[span], inner / total)
-    return Linearisation(point, look.active, residual, slopes, mine)
+    return Linearisation(point, linearisation.active, residual, slopes, mine)
 
 
 def bounded_step(
-    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, damping: float
+    study: Study, linearisation: Linearisation, used: np.ndarray, prior: Prior, damping: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """A damped step within the parameters' bounds.
 
@@ -81,12 +81,14 @@ def bounded_step(
     Returns:
         Step along the active directions (q,), and of the decays' own unknowns (r, o).
     """
-    step, own_step = damped_step(study, look, used, prior, damping)
-    low, high = (study.limits[list(look.active)] - study.steps(look.place.x)[list(look.active), None]).T
+    step, own_step = damped_step(study, linearisation, used, prior, damping)
+    low, high = (
+        study.limits[list(linearisation.active)] - study.steps(linearisation.point.x)[list(linearisation.active), None]
+    ).T
     clipped = np.clip(step, low, high)
     if (held := clipped != step).any() and not held.all():
-        rest = look.restricted_to([i for i, out in zip(look.active, held) if not out])
-        rest = replace(rest, residual=look.residual + look.slopes[:, held] @ clipped[held])
+        rest = linearisation.restricted_to([i for i, out in zip(linearisation.active, held) if not out])
+        rest = replace(rest, residual=linearisation.residual + linearisation.slopes[:, held] @ clipped[held])
         clipped[~held], own_step = damped_step(study, rest, used, prior, damping)
     return np.clip(clipped, low, high), own_step
 
@@ -108,18 +110,18 @@ class StepTrial(NamedTuple):
 
 
 def try_step(
-    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own_step: np.ndarray
+    study: Study, linearisation: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own_step: np.ndarray
 ) -> StepTrial:
     """Simulate after a step along the active directions (q,) and of the decays' own unknowns (r, o)."""
-    point = look.place.moved(study.directions[list(look.active)], step, own_step)
+    point = linearisation.point.moved(study.directions[list(linearisation.active)], step, own_step)
     residual = study.residual(point)
-    cost = np.inf if has_diverged(residual) else cost_of(study, look, residual, point, used, prior)
-    predicted = cost_of(study, look, linear_residual(study, look, step, own_step), point, used, prior)
+    cost = np.inf if has_diverged(residual) else cost_of(study, linearisation, residual, point, used, prior)
+    predicted = cost_of(study, linearisation, linear_residual(study, linearisation, step, own_step), point, used, prior)
     return StepTrial(point, residual, cost, predicted)
 
 
 def far_step(
-    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own_step: np.ndarray
+    study: Study, linearisation: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own_step: np.ndarray
 ) -> Linearisation:
     """The linearisation after a long step, or after the longest part of it that gains enough.
 
@@ -128,22 +130,22 @@ def far_step(
 
     Args:
         study: The study.
-        look: Linearisation where the step begins.
+        linearisation: Linearisation where the step begins.
         used: Which series (s,) are fitted.
         prior: Priors of the directions.
         step: Step along the active directions (q,).
         own_step: Step of the decays' own unknowns (r, o).
 
     Returns:
-        The linearisation after the step, its slopes updated; the argument `look` where no part gains enough.
+        The linearisation after the step, its slopes updated; the argument `linearisation` where no part gains enough.
     """
-    now = cost_of(study, look, look.residual, look.place, used, prior)
+    now = cost_of(study, linearisation, linearisation.residual, linearisation.point, used, prior)
     for part in STEP_PARTS:
         stop_if_asked()
-        trial = try_step(study, look, used, prior, part * step, part * own_step)
+        trial = try_step(study, linearisation, used, prior, part * step, part * own_step)
         if now - trial.cost > MIN_PREDICTED_SHARE * max(now - trial.predicted, 0.0):
-            return broyden_update(study, look, trial.point, trial.residual, part * step, part * own_step)
-    return look
+            return broyden_update(study, linearisation, trial.point, trial.residual, part * step, part * own_step)
+    return linearisation
 
 
 def has_diverged(residual: np.ndarray) -> bool:
@@ -153,7 +155,7 @@ def has_diverged(residual: np.ndarray) -> bool:
 
 def fit(
     study: Study,
-    look: Linearisation,
+    linearisation: Linearisation,
     used: np.ndarray,
     prior: Prior,
     *,
@@ -170,7 +172,7 @@ def fit(
 
     Args:
         study: The study.
-        look: Linearisation where the fit begins.
+        linearisation: Linearisation where the fit begins.
         used: Which series (s,) are fitted.
         prior: Priors of the directions.
         iterations: Maximum number of iterations.
@@ -179,23 +181,27 @@ def fit(
         relative_tolerance: The same as a fraction of the cost.
         report: Called with the iteration and the cost.
     """
-    logarithmic = study.logarithmic[list(look.active)]
-    now = cost_of(study, look, look.residual, look.place, used, prior)
-    if has_diverged(look.residual):
-        return FitOutcome(look, 0, False)
+    logarithmic = study.logarithmic[list(linearisation.active)]
+    now = cost_of(study, linearisation, linearisation.residual, linearisation.point, used, prior)
+    if has_diverged(linearisation.residual):
+        return FitOutcome(linearisation, 0, False)
     damping, settled, fresh, taken, renewals_left = 1e-3, False, True, 0, relinearisations
     while taken < iterations and not settled:
         stop_if_asked()
         taken += 1
-        step, own_step = bounded_step(study, look, used, prior, damping)
+        step, own_step = bounded_step(study, linearisation, used, prior, damping)
         scale = min(1.0, MAX_LOG_STEP / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
         step, own_step = scale * step, scale * own_step
-        trial = try_step(study, look, used, prior, step, own_step)
+        trial = try_step(study, linearisation, used, prior, step, own_step)
         expected, gain = now - trial.predicted, now - trial.cost
         least = max(tolerance, relative_tolerance * abs(now))  # of the present cost, not of the first one
         slopes_final, little = fresh or not renewals_left, 0 <= gain < least or expected < least
         if gain > 0:
-            look, now, fresh = broyden_update(study, look, trial.point, trial.residual, step, own_step), trial.cost, False
+            linearisation, now, fresh = (
+                broyden_update(study, linearisation, trial.point, trial.residual, step, own_step),
+                trial.cost,
+                False,
+            )
             damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
             report(taken, now)
         if gain >= max(least, MIN_PREDICTED_SHARE * expected):
@@ -203,8 +209,17 @@ def fit(
         if slopes_final and little:
             settled = True
         elif not slopes_final:
-            look, fresh, renewals_left, damping = study.linearise(look.place, look.active), True, renewals_left - 1, 1e-3
+            linearisation, fresh, renewals_left, damping = (
+                study.linearise(linearisation.point, linearisation.active),
+                True,
+                renewals_left - 1,
+                1e-3,
+            )
         elif gain <= 0:
             damping = max(damping * 8, 1e-2)
             settled = damping > 1e6
-    return FitOutcome(study.linearise(look.place, look.active) if relinearisations and not fresh else look, taken, settled)
+    return FitOutcome(
+        study.linearise(linearisation.point, linearisation.active) if relinearisations and not fresh else linearisation,
+        taken,
+        settled,
+    )

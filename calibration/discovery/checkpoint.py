@@ -36,7 +36,7 @@ class Checkpoint:
     Attributes:
         expected: Expected size of residual rows (n,), or None.
         states: Fits after every round.
-        found: Evidence of accepted effects by name.
+        accepted: Evidence of accepted effects by name.
         scores: Scores of candidates.
         rejected: Rejected effects by name.
         notes: Notes of the search.
@@ -48,7 +48,7 @@ class Checkpoint:
 
     expected: np.ndarray | None
     states: tuple[FitState, ...]
-    found: dict[str, AcceptedEffect]
+    accepted: dict[str, AcceptedEffect]
     scores: tuple[Score, ...]
     rejected: dict[str, Rejected]
     notes: tuple[str, ...]
@@ -60,7 +60,7 @@ class Checkpoint:
     def every_state(self) -> Iterator[FitState]:
         """All fits in the checkpoint."""
         yield from self.states
-        for effect in self.found.values():
+        for effect in self.accepted.values():
             yield from (effect.before, effect.after)
 
 
@@ -79,7 +79,7 @@ def save_checkpoint(path: Path, search: "Search", states: list[FitState], second
     reached = Checkpoint(
         search.study.expected,
         tuple(states),
-        search.found,
+        search.accepted,
         tuple(search.scores),
         search.rejected,
         tuple(search.notes),
@@ -131,7 +131,7 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
         )
         return []
     search.study = replace(search.study, expected=reached.expected)
-    search.found, search.scores, search.rejected = reached.found, list(reached.scores), reached.rejected
+    search.accepted, search.scores, search.rejected = reached.accepted, list(reached.scores), reached.rejected
     search.notes, search.shortlist = list(reached.notes), list(reached.shortlist)
     search.alone, search.earlier = reached.alone, reached.seconds
     search.anchor(reached.begun)
@@ -167,12 +167,16 @@ def _check(reached: Checkpoint, search: "Search") -> None:
     asked: list[tuple[np.ndarray, tuple[int, ...]]] = [(reached.begun, (free,))]
     asked += [] if reached.expected is None else [(reached.expected, (rows,))]
     for state in reached.every_state():
-        look, summary = state.look, state.left
-        if not all(0 <= i < len(study.names) for i in look.active):
+        linearisation, summary = state.linearisation, state.summary
+        if not all(0 <= i < len(study.names) for i in linearisation.active):
             raise ValueError("a direction that there is none of")
-        asked += [(look.residual, (rows,)), (state.residual, (rows,)), (look.slopes, (rows, len(look.active)))]
-        asked += [(look.place.x, (free,)), (look.place.own, study.own_width.shape)]
-        asked += [(look.own, (study.spans[-1].stop if study.spans else 0, study.own_width.shape[1]))]
+        asked += [
+            (linearisation.residual, (rows,)),
+            (state.residual, (rows,)),
+            (linearisation.slopes, (rows, len(linearisation.active))),
+        ]
+        asked += [(linearisation.point.x, (free,)), (linearisation.point.own, study.own_width.shape)]
+        asked += [(linearisation.own, (study.spans[-1].stop if study.spans else 0, study.own_width.shape[1]))]
         asked += [(state.likelihood, (series,)), (summary.likelihood, (series,))]
         asked += [(values, (series, 3)) for values in (summary.squares, summary.parts)]
     for array, shape in asked:

@@ -98,10 +98,10 @@ def diagnose(
 
     def concluded() -> Diagnosis:
         signs = [reversal_note(list(wrong))] if wrong else []
-        lost = [] if search.alone is None else abandoned_decays(search.study, search.alone, states[-1].left)
+        lost = [] if search.alone is None else abandoned_decays(search.study, search.alone, states[-1].summary)
         unknown = [] if campaign.manifest.zero is not None else [UNKNOWN_ZERO_NOTE]
         findings = [str(finding) for finding in group_findings(campaign.findings)]
-        worse = worsened_motions(search.study, states[0].left, states[-1].left)
+        worse = worsened_motions(search.study, states[0].summary, states[-1].summary)
         every = (*signs, *search.study.notes, *search.notes, *lost, *worse, *unknown, *findings)
         return conclude(campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 

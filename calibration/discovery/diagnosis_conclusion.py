@@ -127,8 +127,8 @@ def accepted_effect(search: Search, candidate: Candidate, after: FitState, doubt
         after: Fit of the final model.
         doubt: Why it is in doubt (see `Effect.in_doubt`), or None.
     """
-    accepted, used = search.found[candidate.name], search.study.used
-    before, now = float(accepted.before.left.squares[used].sum()), float(accepted.after.left.squares[used].sum())
+    accepted, used = search.accepted[candidate.name], search.study.used
+    before, now = float(accepted.before.summary.squares[used].sum()), float(accepted.after.summary.squares[used].sum())
     meanings = dict.fromkeys(search.study.model.about(label).meaning for label in candidate.amplitudes)
     held = accepted.verdict.held if accepted.verdict.unseen else float("nan")
     parameters = estimates_of(search, after, candidate.labels) | values_as_estimates(search, after, candidate.choices)
@@ -161,7 +161,7 @@ def plausible_ranges(search: Search, candidate: Candidate, state: FitState) -> d
     """Plausible ranges of an effect's amplitudes, and which sizes in a fit are at an end."""
     ranges = {}
     for label in candidate.amplitudes:
-        size, value = search.setup.plausible[label], search.study.value(label, state.look.place.x)
+        size, value = search.setup.plausible[label], search.study.value(label, state.linearisation.point.x)
         null = search.study.space.free[search.study.labels.index(label)].start
         near = END_SHARE * (size.upper - size.lower)
         at_end = any(abs(value - end) < near < abs(end - null) for end in (size.lower, size.upper))

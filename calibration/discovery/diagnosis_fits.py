@@ -29,9 +29,13 @@ def augmented_model(search: Search, state: FitState) -> Model:
     """The baseline with the effects found, all parameters as fitted."""
     active = search.active(state.chosen)
     moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
-    values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
+    values = {
+        label: search.study.value(label, state.linearisation.point.x) for label, m in zip(search.study.labels, moved) if m
+    }
     values |= {
-        label: search.study.value(label, state.look.place.x) for candidate in state.chosen for label in candidate.choices
+        label: search.study.value(label, state.linearisation.point.x)
+        for candidate in state.chosen
+        for label in candidate.choices
     }
     own_candidates = [candidate for candidate in state.chosen if candidate.load is not None]
     return with_effects(with_candidates(search.setup.baseline, own_candidates), values).at_values(values)
@@ -39,21 +43,21 @@ def augmented_model(search: Search, state: FitState) -> Model:
 
 def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[str, Estimate]:
     """Estimates with standard deviations of directions that are one parameter each."""
-    look, study = state.look, search.study
+    linearisation, study = state.linearisation, search.study
     prior = search.prior(state.chosen)
-    deviations = predict_gain(study, look, prior).deviation
+    deviations = predict_gain(study, linearisation, prior).deviation
     values = {}
     for name in names:
         i = study.names.index(name)
-        if i not in look.active or name not in study.labels:
+        if i not in linearisation.active or name not in study.labels:
             continue
         k = study.labels.index(name)
-        free, x, deviation = study.space.free[k], look.place.x[k], float(deviations[look.active.index(i)])
+        free, x, deviation = study.space.free[k], linearisation.point.x[k], float(deviations[linearisation.active.index(i)])
         slope = (float(free.transform.forward(x + 1e-4)) - float(free.transform.forward(x - 1e-4))) / 2e-4
         about = study.model.about(name)
         determined = bool(deviation < 0.5 * prior.width[i])
         size = abs(slope) * deviation * float(study.directions[i, k])
-        value = study.value(name, look.place.x)
+        value = study.value(name, linearisation.point.x)
         ends = np.array([about.lower, about.upper])
         bound = free.transform.at_bound(float(x)) or bool(np.isclose(value, ends, rtol=1e-6, atol=0.0).any())
         values[name] = Estimate(
@@ -81,7 +85,7 @@ def calibration_of(campaign: Campaign, search: Search, state: FitState, before: 
         | values_as_estimates(search, state, lines, False)
         | values_as_estimates(search, state, choices)
     )
-    tests = test_fits_at(campaign, search, state.look.place)
+    tests = test_fits_at(campaign, search, state.linearisation.point)
     if before is not None:
         earlier = {test.id: test for test in before.tests}
         tests = [_with_start(test, earlier[test.id]) for test in tests]
@@ -112,7 +116,7 @@ def values_as_estimates(search: Search, state: FitState, labels: Sequence[str], 
     estimates = {}
     for label in labels:
         about, start = search.study.model.about(label), search.study.space.free[search.study.labels.index(label)].start
-        value = search.study.value(label, state.look.place.x)
+        value = search.study.value(label, state.linearisation.point.x)
         estimates[label] = Estimate(label, value, None, about.unit, about.meaning, start, False, determined)
     return estimates
 

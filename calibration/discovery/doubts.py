@@ -114,7 +114,7 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
     - the held-out error rose, in all or in the effect's motion.
     """
     tried = {name: rejected.taken_out for name, rejected in search.rejected.items() if rejected.taken_out is not None}
-    verdicts = {candidate.name: search.found[candidate.name].verdict for candidate in state.chosen}
+    verdicts = {candidate.name: search.accepted[candidate.name].verdict for candidate in state.chosen}
     doubted = outdone_effects({name: verdict.worth for name, verdict in verdicts.items()}, tried)
     every = held_out_error_rose(before.objective("holdout"), after.objective("holdout"))
     worse = [dof for dof in DOFS if held_out_error_rose(before.objective("holdout", dof), after.objective("holdout", dof))]
@@ -145,7 +145,7 @@ def moving_release_notes(search: Search, state: FitState) -> list[str]:
     study, moving = search.study, []
     if study.decays is None or not names:
         return []
-    for record, release in zip(study.decay_records, state.look.place.own.reshape(len(study.decay_records), 3, -1)):
+    for record, release in zip(study.decay_records, state.linearisation.point.own.reshape(len(study.decay_records), 3, -1)):
         i = study.decays.data.dofs.index(DOFS.index(str(record.degree_of_freedom)))
         if abs(release[1, i]) > MAX_RELEASE_SPEED * float(np.hypot(*release[:2, i])):
             moving.append(record.id)

@@ -111,14 +111,14 @@ class EffectFits:
         """Weigh tests in waves by the residuals that unknown forces would leave, estimated at a point."""
         self.study = replace(self.study, expected=expected_rows(self.study, point))
 
-    def refit(self, look: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
+    def refit(self, linearisation: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
         """Fit all directions of a linearisation until nothing is gained."""
-        reached = self.fit(look, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction, REFIT_TOLERANCE)
+        reached = self.fit(linearisation, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction, REFIT_TOLERANCE)
         return self.state(chosen, reached)
 
     def fit(
         self,
-        look: Linearisation,
+        linearisation: Linearisation,
         chosen: Sequence[Candidate],
         iterations: int,
         relinearisations: int,
@@ -134,7 +134,7 @@ class EffectFits:
         prior = self.prior(chosen)
         return fit(
             self.study,
-            look,
+            linearisation,
             self.study.used,
             prior,
             iterations=iterations,
@@ -146,14 +146,16 @@ class EffectFits:
 
     def state(self, chosen: Sequence[Candidate], reached: FitOutcome) -> FitState:
         """The state that a fit reached; held-out decays' own unknowns are fitted with the parameters fixed."""
-        study, look = self.study, reached.look
+        study, linearisation = self.study, reached.linearisation
         if study.decays is not None and not study.fitted_decays.all():
-            alone = fit(study, look.restricted_to(()), ~study.used, self.prior(chosen), iterations=4, tolerance=0.5).look
-            look = replace(alone, active=look.active, slopes=look.slopes)
-        residual, settled, taken = study.residual(look.place, "all"), reached.settled, reached.iterations
+            alone = fit(
+                study, linearisation.restricted_to(()), ~study.used, self.prior(chosen), iterations=4, tolerance=0.5
+            ).linearisation
+            linearisation = replace(alone, active=linearisation.active, slopes=linearisation.slopes)
+        residual, settled, taken = study.residual(linearisation.point, "all"), reached.settled, reached.iterations
         return FitState(
             tuple(chosen),
-            look,
+            linearisation,
             residual,
             settled,
             taken,
@@ -184,7 +186,7 @@ class EffectFits:
         Without held-out tests the fitted ones decide, and at `last` blocks of them that are left out in turn.
         """
         study, prior = self.study, self.prior(after.chosen)
-        grounds = HeldOutComparison(study, ~study.used, before.left, after.left, True)
+        grounds = HeldOutComparison(study, ~study.used, before.summary, after.summary, True)
         if study.used.all():
             grounds = grounds._replace(compared=study.used, unseen=False)
             if last and self.blocks is not None:

@@ -38,19 +38,21 @@ def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
     return study.pooled * (boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
 
 
-def cost_of(study: Study, look: Linearisation, residual: np.ndarray, point: Point, used: np.ndarray, prior: Prior) -> float:
+def cost_of(
+    study: Study, linearisation: Linearisation, residual: np.ndarray, point: Point, used: np.ndarray, prior: Prior
+) -> float:
     """The cost that a fit minimises: deviances of the fitted series, and squares of the priors.
 
     Args:
         study: The study.
-        look: Linearisation whose directions are free.
+        linearisation: Linearisation whose directions are free.
         residual: Residual in rows (n,).
         point: The point that the residual is of.
         used: Which series (s,) are fitted.
         prior: Priors of the directions.
     """
     value = float(deviances(study, residual, BOX_COX_POWER)[used].sum())
-    value += float((prior_residuals(study, point, prior)[0][list(look.active)] ** 2).sum())
+    value += float((prior_residuals(study, point, prior)[0][list(linearisation.active)] ** 2).sum())
     return value + float(((point.own / study.own_width) ** 2).sum())
 
 
@@ -100,28 +102,30 @@ class NormalEquations(NamedTuple):
         return matrix + damping * np.diag(np.diag(self.matrix.shared)), slope, back
 
 
-def normal_equations(study: Study, look: Linearisation, weight: np.ndarray, used: np.ndarray, prior: Prior) -> NormalEquations:
+def normal_equations(
+    study: Study, linearisation: Linearisation, weight: np.ndarray, used: np.ndarray, prior: Prior
+) -> NormalEquations:
     """Normal equations of a linearisation.
 
     Args:
         study: The study.
-        look: The linearisation.
+        linearisation: The linearisation.
         weight: Weights of rows (n,).
         used: Which series (s,) are fitted; every decay's own unknowns take part.
         prior: Priors of the directions.
     """
-    active = list(look.active)
-    far, steep = (values[active] for values in prior_residuals(study, look.place, prior))
+    active = list(linearisation.active)
+    far, steep = (values[active] for values in prior_residuals(study, linearisation.point, prior))
     mine = weight * used[study.row_series]
-    shared = look.slopes.T @ (mine[:, None] * look.slopes) + np.diag(steep**2)
-    slope = look.slopes.T @ (mine * look.residual) + steep * far
+    shared = linearisation.slopes.T @ (mine[:, None] * linearisation.slopes) + np.diag(steep**2)
+    slope = linearisation.slopes.T @ (mine * linearisation.residual) + steep * far
     (records, size), q = study.own_width.shape, len(active)
     own_matrix, cross, own_slope = np.zeros((records, size, size)), np.zeros((records, q, size)), np.zeros((records, size))
     for i, span in enumerate(study.spans):
-        weighed = weight[span, None] * look.own[span]
-        own_matrix[i] = weighed.T @ look.own[span] + np.diag(1 / study.own_width[i] ** 2)
-        cross[i] = look.slopes[span].T @ weighed
-        own_slope[i] = weighed.T @ look.residual[span] + look.place.own[i] / study.own_width[i] ** 2
+        weighed = weight[span, None] * linearisation.own[span]
+        own_matrix[i] = weighed.T @ linearisation.own[span] + np.diag(1 / study.own_width[i] ** 2)
+        cross[i] = linearisation.slopes[span].T @ weighed
+        own_slope[i] = weighed.T @ linearisation.residual[span] + linearisation.point.own[i] / study.own_width[i] ** 2
     fitted = np.array([used[study.row_series[span]].any() for span in study.spans], bool)
     gradient = Unknowns(slope, own_slope)  # type: ignore[arg-type]
     return NormalEquations(ArrowMatrix(shared, cross, own_matrix), gradient, fitted)
@@ -133,24 +137,24 @@ def symmetric_inverse(matrix: np.ndarray) -> np.ndarray:
 
 
 def damped_step(
-    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, damping: float
+    study: Study, linearisation: Linearisation, used: np.ndarray, prior: Prior, damping: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Damped step of the parameters (q,), and of the fitted decays' own unknowns (r, o)."""
-    equations = normal_equations(study, look, row_weights(study, look.residual), used, prior)
+    equations = normal_equations(study, linearisation, row_weights(study, linearisation.residual), used, prior)
     matrix, slope, back = equations.reduced(damping)
     step = -symmetric_inverse(matrix) @ slope
     return step, -own_of(back, -step) * equations.fitted[:, None]
 
 
-def linear_residual(study: Study, look: Linearisation, step: np.ndarray, own_step: np.ndarray) -> np.ndarray:
+def linear_residual(study: Study, linearisation: Linearisation, step: np.ndarray, own_step: np.ndarray) -> np.ndarray:
     """Residual in rows (n,) after a step, by the linearisation."""
-    residual = look.residual + look.slopes @ step
+    residual = linearisation.residual + linearisation.slopes @ step
     for span, mine in zip(study.spans, own_step):
-        residual[span] += look.own[span] @ mine
+        residual[span] += linearisation.own[span] @ mine
     return residual
 
 
-def projected_products(study: Study, look: Linearisation, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def projected_products(study: Study, linearisation: Linearisation, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Products of columns with the residual, after projection.
 
     The part that the directions of the linearisation and the decays' own unknowns can explain is projected out. Rows are
@@ -158,16 +162,16 @@ def projected_products(study: Study, look: Linearisation, columns: np.ndarray) -
 
     Args:
         study: The study.
-        look: The linearisation.
+        linearisation: The linearisation.
         columns: Columns in rows (n, k).
 
     Returns:
         Products with the residual (k,), and the columns' squares (k,).
     """
-    root = np.sqrt(row_weights(study, look.residual) * study.used[study.row_series])[:, None]
-    base, columns, residual = (root * rows for rows in (look.slopes, columns, look.residual[:, None]))
+    root = np.sqrt(row_weights(study, linearisation.residual) * study.used[study.row_series])[:, None]
+    base, columns, residual = (root * rows for rows in (linearisation.slopes, columns, linearisation.residual[:, None]))
     for span in study.spans:
-        basis = np.linalg.qr(root[span] * look.own[span][:, look.own[span].any(axis=0)])[0]
+        basis = np.linalg.qr(root[span] * linearisation.own[span][:, linearisation.own[span].any(axis=0)])[0]
         for part in (base, columns, residual):
             part[span] -= basis @ (basis.T @ part[span])
     size = np.linalg.norm(base, axis=0)
@@ -207,18 +211,18 @@ class FirstOrderGain(NamedTuple):
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 
-def predict_gain(study: Study, look: Linearisation, prior: Prior) -> FirstOrderGain:
+def predict_gain(study: Study, linearisation: Linearisation, prior: Prior) -> FirstOrderGain:
     """Gain that the directions of a linearisation would bring if the model were linear.
 
     The decays' own unknowns move too, and weights are updated.
     """
-    residual, step = look.residual, np.zeros(len(look.active))
+    residual, step = linearisation.residual, np.zeros(len(linearisation.active))
     covariance = np.zeros((len(step), len(step)))
     for _ in range(REWEIGHTINGS):
-        equations = normal_equations(study, look, row_weights(study, residual), study.used, prior)
+        equations = normal_equations(study, linearisation, row_weights(study, residual), study.used, prior)
         matrix, slope, back = equations.reduced()
         covariance = symmetric_inverse(matrix)
         step = -covariance @ slope
-        residual = linear_residual(study, look, step, -own_of(back, -step))
-    gain = minus_two_log_likelihood(study, look.residual) - minus_two_log_likelihood(study, residual)
+        residual = linear_residual(study, linearisation, step, -own_of(back, -step))
+    gain = minus_two_log_likelihood(study, linearisation.residual) - minus_two_log_likelihood(study, residual)
     return FirstOrderGain(step, gain, study.used, covariance)

@@ -45,18 +45,18 @@ class FitState:
 
     Attributes:
         chosen: The effects in the model.
-        look: Linearisation at the fitted point.
+        linearisation: Linearisation at the fitted point.
         residual: Residual of all tests, in rows (n,).
         settled: Whether the fit converged.
         iterations: Iterations taken.
         likelihood: -2 ln L by series (s,).
-        left: Residual above the noise floor.
+        summary: Residual above the noise floor.
     """
 
     chosen: tuple[Candidate, ...]
-    look: Linearisation
+    linearisation: Linearisation
     residual: np.ndarray
     settled: bool
     iterations: int
     likelihood: np.ndarray
-    left: ResidualSummary
+    summary: ResidualSummary

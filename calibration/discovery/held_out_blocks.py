@@ -49,22 +49,22 @@ class HeldOutBlocks:
         releases = np.zeros((0, 0))
         if study.decays is not None:
             releases = np.asarray(first_guess(study.decay_records, study.decays.data))
-        point = Point(state.look.place.x, releases)
+        point = Point(state.linearisation.point.x, releases)
         every = np.ones(len(study.series), bool)
         if study.decays is not None:
             point = fit(
                 study, study.linearise(point, ()), every, prior, iterations=BLOCK_ITERATIONS, relinearisations=1
-            ).look.place
+            ).linearisation.point
         if study.seas and study.expected is None:
             self.study = study = replace(study, expected=expected_rows(study, point))
-        look = study.linearise(point, state.look.active)
-        summary = ResidualSummary.of(study, look.residual)
+        linearisation = study.linearise(point, state.linearisation.active)
+        summary = ResidualSummary.of(study, linearisation.residual)
         for number in range(BLOCKS_PER_TEST):
             out = self.block == number
-            fitted = fit(study, look, ~out, prior, iterations=BLOCK_ITERATIONS).look
+            fitted = fit(study, linearisation, ~out, prior, iterations=BLOCK_ITERATIONS).linearisation
             if study.decays is not None:
-                fitted = fit(study, fitted.restricted_to(()), out, prior, iterations=BLOCK_ITERATIONS).look
-            held_out = ResidualSummary.of(study, study.residual(fitted.place))
+                fitted = fit(study, fitted.restricted_to(()), out, prior, iterations=BLOCK_ITERATIONS).linearisation
+            held_out = ResidualSummary.of(study, study.residual(fitted.point))
             summary = ResidualSummary(
                 *(np.where(out if new.ndim == 1 else out[:, None], new, old) for new, old in zip(held_out, summary))
             )

@@ -89,14 +89,14 @@ class Linearisation:
     """Residual and slopes at a point, in rows (`FourierRows`), the decays' rows before the seas'.
 
     Attributes:
-        place: The point.
+        point: The point.
         active: Numbers of the directions.
         residual: Residual (n,).
         slopes: Slopes along the directions (n, q).
         own: Slopes of the decays' rows along their own unknowns (m, o).
     """
 
-    place: Point
+    point: Point
     active: tuple[int, ...]
     residual: np.ndarray
     slopes: np.ndarray

@@ -38,7 +38,7 @@ def predictions_of(search: Search, state: FitState, tests: Sequence[TestFit]) ->
     held = [(test, series) for test in tests if test.use == "holdout" for series in test.series if series.scored]
     if not held:
         return ()
-    covariance = predict_gain(search.study, state.look, search.prior(state.chosen)).covariance
+    covariance = predict_gain(search.study, state.linearisation, search.prior(state.chosen)).covariance
     slopes, errors = motion_slopes(search, state), relative_errors(tests)
     predictions = []
     for test, series in held:
@@ -73,8 +73,8 @@ def motion_slopes(search: Search, state: FitState) -> dict[tuple[str, str], np.n
     after that fit.
     """
     study = search.study
-    parts = study.time_slopes(state.look.place, state.look.active)
-    q, by_motion = len(state.look.active), {}
+    parts = study.time_slopes(state.linearisation.point, state.linearisation.active)
+    q, by_motion = len(state.linearisation.active), {}
     if study.decays is not None:
         dofs = study.decays.data.dofs
         whole = parts.pop(0)

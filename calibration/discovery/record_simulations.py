@@ -152,8 +152,10 @@ class RecordSimulations:
         """Begin all jobs, in groups of so many directions, and wait for them."""
         chunks = [(point, mine) for point, active in jobs for mine in _chunks(active, width)]
         begun = [begin(point, mine, i == 0) for i, (point, mine) in enumerate(chunks)]
-        looks = iter([self._linearisation(point, mine, parts()) for (point, mine), parts in zip(chunks, begun, strict=True)])
-        return [reduce(Linearisation.joined_with, islice(looks, len(_chunks(active, width)))) for _, active in jobs]
+        linearisations = iter(
+            [self._linearisation(point, mine, parts()) for (point, mine), parts in zip(chunks, begun, strict=True)]
+        )
+        return [reduce(Linearisation.joined_with, islice(linearisations, len(_chunks(active, width)))) for _, active in jobs]
 
     def _slopes(
         self,

@@ -57,21 +57,21 @@ def signature(search: Search, before: FitState, after: FitState) -> tuple[float,
     study = search.study
     told = study.main & np.array([series.channel in search.setup.motions for series in study.series])
     spread = np.array([series.spread for series in study.series])
-    total, remaining = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
+    total, remaining = (float(((state.summary.error / spread)[told] ** 2).sum()) for state in (before, after))
     share = remaining / total if total > 0 else 0.0
-    if not (after.left.squares.sum(axis=1) > (MIN_RESIDUAL_OVER_NOISE**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[
+    if not (after.summary.squares.sum(axis=1) > (MIN_RESIDUAL_OVER_NOISE**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[
         told
     ].any():
         fitted = [record for record in search.campaign.records if record.use == "fit"]
         noise_declared = all(set(record.noise) - {WAVE} <= set(search.campaign.manifest.noise) for record in fitted)
         return share, f"white at the {'declared noise level' if noise_declared else 'level of the noise, which was estimated'}"
     by_motion: dict[tuple[str, str], float] = {}
-    for series, relative in zip(study.series, np.where(told, after.left.error / spread, 0.0)):
+    for series, relative in zip(study.series, np.where(told, after.summary.error / spread, 0.0)):
         key = (series.channel, "decays" if series.kind == "decay" else "waves")
         by_motion[key] = max(by_motion.get(key, 0.0), float(relative))
     rows = sorted(by_motion.items(), key=lambda item: -item[1])[:3]
     shares = [f"{100 * value:.0f} % of {channel} in {kind}" for (channel, kind), value in rows if value > 0.005]
-    i = int(np.argmax(np.where(told, after.left.error / spread, 0.0)))
+    i = int(np.argmax(np.where(told, after.summary.error / spread, 0.0)))
     series = study.series[i]
     k = int(np.argmax((study.mean_squares(after.residual)[i] - 1) * series.dof * series.floor**2))
     where = f"{series.channel} of the test {series.test}, from {series.low[k]:.3g} to {series.high[k]:.3g} Hz"

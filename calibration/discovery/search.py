@@ -61,7 +61,7 @@ class Search(EffectFits):
         notes: Notes to report, in words.
         earlier: Computing time of earlier, stopped runs (s).
         alone: Residual of a calibration to decays alone, where there are seas too.
-        found: Evidence of the accepted effects by name.
+        accepted: Evidence of the accepted effects by name.
         shortlist: Candidates that helped in the rounds along all candidates, or were in probable sets.
     """
 
@@ -72,7 +72,7 @@ class Search(EffectFits):
         self.notes: list[str] = []
         self.earlier = 0.0
         self.alone: ResidualSummary | None = None
-        self.found: dict[str, AcceptedEffect] = {}
+        self.accepted: dict[str, AcceptedEffect] = {}
         self.shortlist: list[ListedVariant] = []
 
     def fit_baseline(self) -> FitState:
@@ -111,15 +111,19 @@ class Search(EffectFits):
         if candidate is None or candidate in state.chosen:
             return state
         mine, width = self.study.index(candidate.amplitudes), self.setup.prior.width[self.study.index(candidate.amplitudes)]
-        if np.abs(self.study.steps(state.look.place.x)[mine] / width).max() < 1:
+        if np.abs(self.study.steps(state.linearisation.point.x)[mine] / width).max() < 1:
             return state
         chosen = (*state.chosen, candidate)
-        after = self.refit(self.study.linearise(state.look.place, self.active(chosen)), chosen, "mass properties let go", 0.98)
+        after = self.refit(
+            self.study.linearise(state.linearisation.point, self.active(chosen)), chosen, "mass properties let go", 0.98
+        )
         prior = self.prior(chosen)
-        deviation = predict_gain(self.study, after.look, prior).deviation[[after.look.active.index(i) for i in mine]]
-        far = (np.abs(self.study.steps(after.look.place.x)[mine]) - MASS_DEVIATIONS_ALLOWED * width) / deviation
+        deviation = predict_gain(self.study, after.linearisation, prior).deviation[
+            [after.linearisation.active.index(i) for i in mine]
+        ]
+        far = (np.abs(self.study.steps(after.linearisation.point.x)[mine]) - MASS_DEVIATIONS_ALLOWED * width) / deviation
         squares = [
-            float((prior_residuals(self.study, fitted.look.place, by)[0][mine] ** 2).sum())
+            float((prior_residuals(self.study, fitted.linearisation.point, by)[0][mine] ** 2).sum())
             for fitted, by in ((state, self.prior(state.chosen)), (after, prior))
         ]
         gain = self.likelihood_gain(state, after) + squares[0] - squares[1]
@@ -130,7 +134,7 @@ class Search(EffectFits):
         if verdict.net < -MIN_HELD_OUT_GAIN:
             return state
         # scores and BIC are of errors, and none tells of it
-        self.found[candidate.name] = AcceptedEffect(
+        self.accepted[candidate.name] = AcceptedEffect(
             math.nan, state, after, verdict._replace(bic=math.nan, refused=None), (), math.nan, np.zeros(0)
         )
         self.rejected.pop(candidate.name, None)

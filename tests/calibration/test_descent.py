@@ -29,7 +29,7 @@ class Oscillations(Study):
         return self.cuts[0](self.values(place) - self.measured)
 
     def linearise(self, place: Point, active) -> Linearisation:
-        self.looks.append(place)
+        self.linearisations.append(place)
         steps = 1e-6 * np.eye(4)
 
         def slope(x, own):
@@ -67,7 +67,7 @@ def study():
         None,
     )
     truth = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
-    object.__setattr__(found, "looks", [])
+    object.__setattr__(found, "linearisations", [])
     object.__setattr__(found, "measured", found.values(truth) + noise)
     return found
 
@@ -77,78 +77,80 @@ PRIOR = Prior(np.zeros(2), np.full(2, 10.0))
 
 def best(study: Study, begin: Point) -> np.ndarray:
     """By SciPy, of the fitted records."""
-    look = study.linearise(begin, (0, 1))
+    linearisation = study.linearise(begin, (0, 1))
 
     def cost(z):
         place = Point(z[:2], np.vstack([z[2:].reshape(2, 2), begin.own[2:]]))
-        return cost_of(study, look, study.residual(place), place, study.used, PRIOR)
+        return cost_of(study, linearisation, study.residual(place), place, study.used, PRIOR)
 
     start = np.concatenate([begin.x, begin.own[:2].ravel()])
     return minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-8, "fatol": 1e-10, "maxiter": 8000}).x
 
 
-@pytest.mark.parametrize(("looks", "close"), [(0, 0.01), (3, 2e-4)], ids=["slopes of the start", "slopes anew"])
-def test_a_fit_ends_where_scipy_does(study, looks, close):
+@pytest.mark.parametrize(("linearisations", "close"), [(0, 0.01), (3, 2e-4)], ids=["slopes of the start", "slopes anew"])
+def test_a_fit_ends_where_scipy_does(study, linearisations, close):
     """From slopes far from the end's: nearly so with these alone, mended; exactly with slopes taken anew. The held-out record's
     own unknowns stay."""
     begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
     expected = best(study, begin)
-    study.looks.clear()
+    study.linearisations.clear()
     reached = fit(
-        study, study.linearise(begin, (0, 1)), study.used, PRIOR, iterations=60, relinearisations=looks, tolerance=1e-6
+        study, study.linearise(begin, (0, 1)), study.used, PRIOR, iterations=60, relinearisations=linearisations, tolerance=1e-6
     )
     assert reached.settled
-    assert len(study.looks) <= 1 + looks + 1
-    assert_allclose(reached.look.place.x, expected[:2], atol=close)
-    assert_allclose(reached.look.place.own[:2].ravel(), expected[2:], atol=10 * close)
-    assert_allclose(reached.look.place.own[2], begin.own[2])
+    assert len(study.linearisations) <= 1 + linearisations + 1
+    assert_allclose(reached.linearisation.point.x, expected[:2], atol=close)
+    assert_allclose(reached.linearisation.point.own[:2].ravel(), expected[2:], atol=10 * close)
+    assert_allclose(reached.linearisation.point.own[2], begin.own[2])
 
 
 def test_a_fit_stays_where_its_parameters_make_sense(study):
     """What would leave is at the end of its range, and all others where SciPy has them with it there."""
     begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
     study.__dict__["limits"] = np.array([[-np.inf, np.inf], [-0.02, np.inf]])
-    look = study.linearise(begin, (0, 1))
+    linearisation = study.linearise(begin, (0, 1))
 
     def cost(z):
         place = Point(np.array([z[0], 0.08]), np.vstack([z[1:].reshape(2, 2), begin.own[2:]]))
-        return cost_of(study, look, study.residual(place), place, study.used, PRIOR)
+        return cost_of(study, linearisation, study.residual(place), place, study.used, PRIOR)
 
     options = {"xatol": 1e-8, "fatol": 1e-10, "maxiter": 8000}
     expected = minimize(cost, [1.25, *begin.own[:2].ravel()], method="Nelder-Mead", options=options).x
-    reached = fit(study, look, study.used, PRIOR, iterations=60, relinearisations=3, tolerance=1e-6)
-    assert_allclose(reached.look.place.x, [expected[0], 0.08], atol=2e-4)
-    assert_allclose(reached.look.place.own[:2].ravel(), expected[1:], atol=2e-3)
+    reached = fit(study, linearisation, study.used, PRIOR, iterations=60, relinearisations=3, tolerance=1e-6)
+    assert_allclose(reached.linearisation.point.x, [expected[0], 0.08], atol=2e-4)
+    assert_allclose(reached.linearisation.point.own[:2].ravel(), expected[1:], atol=2e-3)
 
 
 def test_held_out_records_are_fitted_with_parameters_as_they_are(study):
     """No directions: only the own unknowns of what is asked for move."""
     begin = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.1, 0.3]]))
     reached = fit(study, study.linearise(begin, ()), ~study.used, PRIOR, iterations=10, tolerance=1e-6)
-    assert_allclose(reached.look.place.own[2], [0.5, 0.0], atol=0.02)
-    assert_allclose(reached.look.place.own[:2], begin.own[:2])
-    assert_allclose(reached.look.place.x, begin.x)
+    assert_allclose(reached.linearisation.point.own[2], [0.5, 0.0], atol=0.02)
+    assert_allclose(reached.linearisation.point.own[:2], begin.own[:2])
+    assert_allclose(reached.linearisation.point.x, begin.x)
 
 
 def test_mended_slopes_give_the_step_that_was_taken(study):
     """The secant equation, record by record."""
     begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
-    look = study.linearise(begin, (0, 1))
+    linearisation = study.linearise(begin, (0, 1))
     step, own = np.array([0.03, -0.02]), np.array([[0.1, 0.05], [0.2, -0.1], [0.0, 0.0]])
     there = begin.moved(study.directions, step, own)
     residual = study.residual(there)
-    after = broyden_update(study, look, there, residual, step, own)
-    assert_allclose(linear_residual(study, after, -step, -own), look.residual, atol=1e-10)
+    after = broyden_update(study, linearisation, there, residual, step, own)
+    assert_allclose(linear_residual(study, after, -step, -own), linearisation.residual, atol=1e-10)
 
 
 def test_a_prediction_is_exact_where_the_model_is_linear(study):
     """Along the own unknowns alone the model is linear: what is predicted is what a fit gains, held-out tests too."""
     begin = Point(np.array([1.3, 0.06]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.1]]))
-    look = study.linearise(begin, ())
-    found = predict_gain(study, look, PRIOR)
+    linearisation = study.linearise(begin, ())
+    found = predict_gain(study, linearisation, PRIOR)
     for used, gain in ((study.used, found.fitted), (~study.used, found.held)):
-        reached = fit(study, look, used, PRIOR, iterations=20, tolerance=1e-9)
-        now = minus_two_log_likelihood(study, look.residual) - minus_two_log_likelihood(study, reached.look.residual)
+        reached = fit(study, linearisation, used, PRIOR, iterations=20, tolerance=1e-9)
+        now = minus_two_log_likelihood(study, linearisation.residual) - minus_two_log_likelihood(
+            study, reached.linearisation.residual
+        )
         assert now[used].sum() > 10
         assert_allclose(gain, now[used].sum(), rtol=0.01)
 
@@ -170,8 +172,8 @@ def test_a_fit_is_converged_to_the_tolerance_of_where_it_ends(study, far):
     )
     near = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
     expected = best(study, near)
-    z = np.concatenate([reached.look.place.x, reached.look.place.own[:2].ravel()])
+    z = np.concatenate([reached.linearisation.point.x, reached.linearisation.point.own[:2].ravel()])
     place = Point(expected[:2], np.vstack([expected[2:].reshape(2, 2), begin.own[2:]]))
-    least = cost_of(study, reached.look, study.residual(place), place, study.used, PRIOR)
+    least = cost_of(study, reached.linearisation, study.residual(place), place, study.used, PRIOR)
     assert reached.settled and costs[-1] - least < 2 * MIN_RELATIVE_GAIN * abs(least)
     assert_allclose(z, expected, atol=2e-3)

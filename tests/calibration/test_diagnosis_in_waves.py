@@ -191,8 +191,10 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
         campaign = campaign_of(folder, lambda omega, shift=shift: pressure(omega) * np.exp(1j * turns(omega) * shift))
         setup = set_up_study(campaign, options_of(campaign))
         (one,) = (one for one in setup.candidates if label in one.amplitudes)
-        look = setup.study.linearise(Point(np.asarray(setup.study.space.start), np.zeros((0, 0))), setup.study.index([label]))
-        found.append(phase_shift_start(setup.study, look, label, one.phase_per_unit))
+        linearisation = setup.study.linearise(
+            Point(np.asarray(setup.study.space.start), np.zeros((0, 0))), setup.study.index([label])
+        )
+        found.append(phase_shift_start(setup.study, linearisation, label, one.phase_per_unit))
     there, nothing = found
     assert there.values[label] == pytest.approx(far, abs=PHASE_SPACING / abs(turns(0.65))) and there.gain > 500
     assert nothing is None
@@ -342,10 +344,12 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     assert_allclose(residual, exact, rtol=0, atol=1e-12)
     assert_allclose(slopes @ weights, along, rtol=0, atol=1e-9 * np.abs(slopes).max())
     active = range(len(study.names) - 3)
-    looks = [dataclasses.replace(study, width=width).linearise(place, active) for width in (16, study.width)]
-    assert_allclose(looks[0].residual, some, rtol=0, atol=1e-12)
-    assert not looks[0].slopes[~fitted].any() and np.abs(looks[0].slopes[fitted]).max() > 1e-3
-    assert_allclose(looks[0].slopes, looks[1].slopes, rtol=0, atol=1e-9 * np.abs(looks[1].slopes).max())
+    linearisations = [dataclasses.replace(study, width=width).linearise(place, active) for width in (16, study.width)]
+    assert_allclose(linearisations[0].residual, some, rtol=0, atol=1e-12)
+    assert not linearisations[0].slopes[~fitted].any() and np.abs(linearisations[0].slopes[fitted]).max() > 1e-3
+    assert_allclose(
+        linearisations[0].slopes, linearisations[1].slopes, rtol=0, atol=1e-9 * np.abs(linearisations[1].slopes).max()
+    )
     # a neutral candidate at another value of its shape changes no slope of the acceleration by the state
     memory = next(one for one in setup.candidates if one.name == "radiation_memory (heave)")
     along, known = study.index(memory.amplitudes), {}

@@ -321,15 +321,15 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         return z * (1 + (z / 3) ** 2), 0
 
     def state(x, chosen=()):
-        look = SimpleNamespace(place=Point(np.array(x), None), active=(0, 1))
-        return SimpleNamespace(look=look, chosen=chosen, likelihood=np.zeros(1))
+        linearisation = SimpleNamespace(point=Point(np.array(x), None), active=(0, 1))
+        return SimpleNamespace(linearisation=linearisation, chosen=chosen, likelihood=np.zeros(1))
 
     monkeypatch.setattr(search, "predict_gain", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
     monkeypatch.setattr(search, "prior_residuals", away)
     after = state([0.1, inertia], (one,))
     under_way = SimpleNamespace(
         setup=SimpleNamespace(candidates=[one], prior=nearly),
-        found={},
+        accepted={},
         rejected={},
         notes=[],
         count=500.0,
@@ -341,9 +341,9 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         assess=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, Refusal(RefusalKind.NEGLIGIBLE)),
     )
     found = Search.with_mass_properties(under_way, state([0.1, 0.9 * inertia]))
-    assert (found is after) == told == ("mass_properties" in under_way.found)
+    assert (found is after) == told == ("mass_properties" in under_way.accepted)
     if told:
-        evidence = under_way.found["mass_properties"].verdict
+        evidence = under_way.accepted["mass_properties"].verdict
         assert evidence.refused is None and np.isnan(evidence.bic)  # which is of errors
         assert under_way.notes[0].startswith("inertia pitch is further from the platform file's values")
 

@@ -43,7 +43,7 @@ def oscillator_period_finder(dof: str, shortest: float, longest: float) -> Shape
     all periods. The part of it that the fitted directions can explain is projected out. A refit decides.
     """
 
-    def periods_to_try(study: "Study", look: "Linearisation", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
+    def periods_to_try(study: "Study", linearisation: "Linearisation", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
         tried = shortest * PERIOD_SPACING ** np.arange(int(math.log(longest / shortest, PERIOD_SPACING)) + 1)
         omega = 2 * math.pi * study.frequency
         per_response = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, shortest, NEUTRAL_DAMPING_RATIO)
@@ -51,7 +51,7 @@ def oscillator_period_finder(dof: str, shortest: float, longest: float) -> Shape
             [per_response * response(omega, period, ratio) for ratio in TRIED_DAMPING_RATIOS for period in tried], axis=1
         )
         rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
-        along, size = projected_products(study, look, rows)
+        along, size = projected_products(study, linearisation, rows)
         gain = np.where(along < 0, along**2 / np.maximum(size, 1e-300), 0.0)  # a mass is not negative
         best = [
             (float(of_ratio[i]), float(tried[i]), ratio)

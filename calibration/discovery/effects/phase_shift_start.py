@@ -40,12 +40,14 @@ class PhaseShiftStart(NamedTuple):
     gain: float
 
 
-def phase_shift_start(study: "Study", look: "Linearisation", label: str, turns: PhasePerUnit) -> PhaseShiftStart | None:
+def phase_shift_start(
+    study: "Study", linearisation: "Linearisation", label: str, turns: PhasePerUnit
+) -> PhaseShiftStart | None:
     """The likeliest value of a parameter that shifts the phase of waves.
 
     Args:
         study: The study.
-        look: Linearisation at the neutral value, with the slopes along the parameter.
+        linearisation: Linearisation at the neutral value, with the slopes along the parameter.
         label: Label of the parameter.
         turns: Phase per unit (rad) by circular frequency and water.
 
@@ -54,9 +56,9 @@ def phase_shift_start(study: "Study", look: "Linearisation", label: str, turns: 
     """
     (i,) = study.index([label])
     about = study.model.about(label)
-    unit = study.value(label, look.place.x + study.directions[i]) - study.value(label, look.place.x)
+    unit = study.value(label, linearisation.point.x + study.directions[i]) - study.value(label, linearisation.point.x)
     waves = study.first_order
-    along = look.slopes[:, look.active.index(i)].reshape(-1, 2)[waves] @ [1, 1j] / unit
+    along = linearisation.slopes[:, linearisation.active.index(i)].reshape(-1, 2)[waves] @ [1, 1j] / unit
     phase = turns(2 * math.pi * study.frequency[waves], study.model.environment)
     weight = (study.share * study.used[study.row_series])[::2][waves]
     motion = float(weight @ np.abs(along / phase) ** 2)
@@ -66,7 +68,7 @@ def phase_shift_start(study: "Study", look: "Linearisation", label: str, turns: 
     tried = np.arange(about.lower, about.upper, PHASE_SPACING / usual)
 
     def deviance(value: float) -> float:
-        residual = look.residual.reshape(-1, 2).copy()
+        residual = linearisation.residual.reshape(-1, 2).copy()
         change = along * np.expm1(1j * phase * value) / (1j * phase)
         residual[waves] += np.stack([change.real, change.imag], axis=1)
         return float(minus_two_log_likelihood(study, residual.ravel())[study.used].sum())

@@ -15,7 +15,7 @@ DELAY_SPACING = 0.05  # s, between the delays that are compared
 ZERO_DELAY_GRID: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: measured} for measured in (0.0, 1.0))
 
 
-def reflection_delays(study: Study, look: Linearisation, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
+def reflection_delays(study: Study, linearisation: Linearisation, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
     """The likeliest delays (s) for `WaveReflection`.
 
     Slopes at no delay, shifted in time, are correlated with the residual at frequencies of first-order waves. In a linear
@@ -23,15 +23,15 @@ def reflection_delays(study: Study, look: Linearisation, slopes: np.ndarray) -> 
 
     Args:
         study: The study.
-        look: Linearisation with the residual.
+        linearisation: Linearisation with the residual.
         slopes: Slopes at no delay, in rows (n,).
     """
     later = np.arange(0.0, MAX_DELAY, DELAY_SPACING)
-    weight = row_weights(study, look.residual) * study.used[study.row_series]
+    weight = row_weights(study, linearisation.residual) * study.used[study.row_series]
     product, power, begin = np.zeros(later.size), 0.0, sum(2 * len(cut.take) for cut in study.cuts[: -len(study.seas)])
     for record, cut in zip(study.seas, study.cuts[-len(study.seas) :]):
         rows = slice(begin, begin := begin + 2 * len(cut.take))
-        residual_lines, slope_lines = (values[rows].reshape(-1, 2) @ [1, 1j] for values in (look.residual, slopes))
+        residual_lines, slope_lines = (values[rows].reshape(-1, 2) @ [1, 1j] for values in (linearisation.residual, slopes))
         duration = record.measured.shape[-1] * float(record.times[1] - record.times[0])
         line = cut.take % cut.lines
         share = weight[rows][::2] * study.first_order[rows.start // 2 : rows.stop // 2]

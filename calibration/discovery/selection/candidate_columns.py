@@ -33,7 +33,7 @@ class CandidateColumns:
         values: These values by variant.
         directions: Direction of the study of every column.
         series: Series of every pool.
-        look: Linearisation along the base directions and the effects in the model.
+        linearisation: Linearisation along the base directions and the effects in the model.
     """
 
     model: LinearModel
@@ -42,7 +42,7 @@ class CandidateColumns:
     values: tuple[Mapping[str, float], ...]
     directions: tuple[int, ...]
     series: np.ndarray
-    look: Linearisation
+    linearisation: Linearisation
 
     @property
     def laboratory(self) -> frozenset[int]:
@@ -71,12 +71,12 @@ def linearise_candidates(fits: EffectFits, state: FitState, among: Sequence[List
     others = [candidate for candidate in fits.setup.candidates if candidate.name not in names]
     # a fit moves on with the slopes at hand, and leaves the shapes of its effects alone
     active = fits.active(state.chosen) if state.chosen else None
-    return candidate_columns(fits, state.look, state.chosen, others, among, active)
+    return candidate_columns(fits, state.linearisation, state.chosen, others, among, active)
 
 
 def candidate_columns(
     fits: EffectFits,
-    look: Linearisation,
+    linearisation: Linearisation,
     chosen: Sequence[Candidate],
     candidates: Sequence[Candidate],
     among: Sequence[ListedVariant] | None = None,
@@ -86,31 +86,31 @@ def candidate_columns(
 
     Args:
         fits: Study, candidates, priors.
-        look: Linearisation along all free directions of the model.
+        linearisation: Linearisation along all free directions of the model.
         chosen: The effects in the model.
         candidates: Other candidates, which are linearised along.
         among: Which of them, at values of their shapes; None: all.
-        anew: Directions along which the model is linearised anew, at the same point; None: `look` is taken.
+        anew: Directions along which the model is linearised anew, at the same point; None: `linearisation` is taken.
     """
     study = fits.study
     first, later = first_passes(fits, candidates, among)
-    active = look.active if anew is None else tuple(anew)
-    jobs = jobs_of(fits, look.place, active, first)
-    looks = []
+    active = linearisation.active if anew is None else tuple(anew)
+    jobs = jobs_of(fits, linearisation.point, active, first)
+    linearisations = []
     by_state: KnownSlopes = {}
     if anew is not None or jobs:
-        point, others = jobs[0] if jobs else (look.place, ())
+        point, others = jobs[0] if jobs else (linearisation.point, ())
         # neutral candidates move nothing, whatever their shapes: the model and the first of them are one linearisation
         [whole] = study.linearise_all([(point, others if anew is None else (*active, *others))], keep=by_state)
-        looks = [whole.restricted_to(others)] if jobs else []
-        look = look if anew is None else replace(whole.restricted_to(active), place=look.place)
+        linearisations = [whole.restricted_to(others)] if jobs else []
+        linearisation = linearisation if anew is None else replace(whole.restricted_to(active), point=linearisation.point)
     varied = [label for candidate in fits.setup.candidates if candidate.has_variants for label in candidate.amplitudes]
     moving = study.index(list(dict.fromkeys(varied)))
-    looks += study.linearise_neutral(jobs[1:], by_state, moving)
-    gathered = _Columns(fits, look)
+    linearisations += study.linearise_neutral(jobs[1:], by_state, moving)
+    gathered = _Columns(fits, linearisation)
     gathered.add_linearised(chosen, candidates)
-    last = packed([*gathered.take(first, looks), *later], study.width)
-    gathered.take(last, study.linearise_neutral(jobs_of(fits, look.place, active, last), by_state, moving))
+    last = packed([*gathered.take(first, linearisations), *later], study.width)
+    gathered.take(last, study.linearise_neutral(jobs_of(fits, linearisation.point, active, last), by_state, moving))
     return gathered.columns()
 
 
@@ -124,9 +124,9 @@ class _Columns:
         values: These values by variant.
     """
 
-    def __init__(self, fits: EffectFits, look: Linearisation) -> None:
-        self.fits, self.study, self.look = fits, fits.study, look
-        self.slopes, self.directions = [look.slopes], list(look.active)
+    def __init__(self, fits: EffectFits, linearisation: Linearisation) -> None:
+        self.fits, self.study, self.linearisation = fits, fits.study, linearisation
+        self.slopes, self.directions = [linearisation.slopes], list(linearisation.active)
         self.variants: list[Variant] = []
         self.values: list[Mapping[str, float]] = []
 
@@ -155,7 +155,7 @@ class _Columns:
             if is_nearly_known(self.fits, candidate):
                 self.add_nearly_known(candidate)
             elif candidate in chosen:
-                self.add(candidate, [self.look.active.index(i) for i in self.study.index(candidate.labels)], {})
+                self.add(candidate, [self.linearisation.active.index(i) for i in self.study.index(candidate.labels)], {})
 
     def add_nearly_known(self, candidate: Candidate) -> None:
         """Add an effect whose parameters move a little in every fit.
@@ -163,61 +163,63 @@ class _Columns:
         Second columns of the same slopes let them go further.
         """
         mine = self.study.index(candidate.amplitudes)
-        slopes = self.look.slopes[:, [self.look.active.index(i) for i in mine]]
+        slopes = self.linearisation.slopes[:, [self.linearisation.active.index(i) for i in mine]]
         self.add(candidate, self.append(slopes, mine), {})
 
-    def take(self, passes: Sequence[Sequence[CandidateValues]], looks: Sequence[Linearisation]) -> list[CandidateValues]:
+    def take(
+        self, passes: Sequence[Sequence[CandidateValues]], linearisations: Sequence[Linearisation]
+    ) -> list[CandidateValues]:
         """Take the slopes along candidates at values of their shapes.
 
         Args:
             passes: Candidates and values.
-            looks: Linearisations along them.
+            linearisations: Linearisations along them.
 
         Returns:
             Further values to try.
         """
-        active, study = self.look.active, self.study
+        active, study = self.linearisation.active, self.study
         further: list[CandidateValues] = []
-        for members, linearisation in zip(passes, looks, strict=True):
-            numbers = dict(
-                zip(linearisation.active, self.append(linearisation.slopes, list(linearisation.active)), strict=True)
-            )
+        for members, along in zip(passes, linearisations, strict=True):
+            numbers = dict(zip(along.active, self.append(along.slopes, list(along.active)), strict=True))
             for candidate, values in members:
                 amplitudes = study.index(candidate.amplitudes)
                 self.add(candidate, [active.index(i) if i in active else numbers[i] for i in amplitudes], values)
                 if candidate.shape_finder is not None and values in (candidate.grid or ({},)):
-                    first = linearisation.slopes[:, linearisation.active.index(amplitudes[0])]
-                    further += [(candidate, {**values, **shape}) for shape in candidate.shape_finder(study, self.look, first)]
+                    first = along.slopes[:, along.active.index(amplitudes[0])]
+                    further += [
+                        (candidate, {**values, **shape}) for shape in candidate.shape_finder(study, self.linearisation, first)
+                    ]
                 if candidate.phase_per_unit is not None:
-                    look = self.look.joined_with(linearisation.restricted_to(amplitudes[:1]))
-                    self.add_far_shift(candidate, replace(look, place=linearisation.place))
+                    joined = self.linearisation.joined_with(along.restricted_to(amplitudes[:1]))
+                    self.add_far_shift(candidate, replace(joined, point=along.point))
         return further
 
-    def add_far_shift(self, candidate: Candidate, look: Linearisation) -> None:
+    def add_far_shift(self, candidate: Candidate, linearisation: Linearisation) -> None:
         """Add an effect that shifts the phases of waves, if it is further away than slopes reach.
 
         `phase_shift_start` finds this out from the phases.
 
         Args:
             candidate: The candidate.
-            look: Linearisation whose last direction is the candidate's.
+            linearisation: Linearisation whose last direction is the candidate's.
         """
         assert candidate.phase_per_unit is not None
-        far = phase_shift_start(self.study, look, candidate.amplitudes[0], candidate.phase_per_unit)
+        far = phase_shift_start(self.study, linearisation, candidate.amplitudes[0], candidate.phase_per_unit)
         if far is not None:
             factor = phase_shift_factor(self.study, candidate.phase_per_unit, far.values[candidate.amplitudes[0]])
-            lines = (look.slopes[:, -1].reshape(-1, 2) @ [1, 1j]) * factor
+            lines = (linearisation.slopes[:, -1].reshape(-1, 2) @ [1, 1j]) * factor
             secant = np.stack([lines.real, lines.imag], axis=1).reshape(-1, 1)
-            self.add(candidate, self.append(secant, look.active[-1:]), far.values)
+            self.add(candidate, self.append(secant, linearisation.active[-1:]), far.values)
 
     def columns(self) -> CandidateColumns:
         """The linear model of the gathered columns."""
         return CandidateColumns(
-            linear_model(self.fits, self.look, np.hstack(self.slopes), self.directions),
+            linear_model(self.fits, self.linearisation, np.hstack(self.slopes), self.directions),
             tuple(range(len(self.fits.base))),
             tuple(self.variants),
             tuple(self.values),
             tuple(self.directions),
             np.repeat(np.arange(len(self.study.series)), self.study.dof.shape[1]),
-            self.look,
+            self.linearisation,
         )

@@ -17,16 +17,16 @@ from calibration.discovery.study import Study
 REWEIGHTINGS = 3  # fits of a held-out decay's own unknowns
 
 
-def predicted_summary(study: Study, look: Linearisation, residual: np.ndarray) -> ResidualSummary:
+def predicted_summary(study: Study, linearisation: Linearisation, residual: np.ndarray) -> ResidualSummary:
     """Summary of a residual, with the held-out decays' own unknowns fitted to them.
 
     Args:
         study: The study.
-        look: Linearisation of all tests.
+        linearisation: Linearisation of all tests.
         residual: Residual that the linear model predicts (n,).
     """
     residual = residual.copy()
-    for _, unknowns, _ in decays_with_unknowns(study, look, fitted=False):
+    for _, unknowns, _ in decays_with_unknowns(study, linearisation, fitted=False):
         before, prior = residual[unknowns.rows].copy(), np.diag(1 / unknowns.width**2)
         for _ in range(REWEIGHTINGS):
             weighted = row_weights(study, residual)[unknowns.rows, None] * unknowns.slopes
@@ -53,7 +53,7 @@ def refusal_by_prediction(study: Study, without: ResidualSummary, with_it: Resid
 
 
 def supported_effects(
-    study: Study, look: Linearisation, selection: JointSelection, present: Sequence[int]
+    study: Study, linearisation: Linearisation, selection: JointSelection, present: Sequence[int]
 ) -> tuple[Subset, dict[int, Refusal]]:
     """The effects that predicted held-out tests support, and why the others are left out.
 
@@ -62,17 +62,17 @@ def supported_effects(
 
     Args:
         study: The study.
-        look: Linearisation of all tests.
+        linearisation: Linearisation of all tests.
         selection: Subsets on the linear model.
         present: Variants of the effects in the model.
     """
     subset, reasons = selection.subset(present), {}
     while subset.variants:
-        with_it = predicted_summary(study, look, selection.model.residual_after(subset.fit))
+        with_it = predicted_summary(study, linearisation, selection.model.residual_after(subset.fit))
         refused = {}
         for i in subset.variants:
             rest = selection.without(subset, i)
-            without = predicted_summary(study, look, selection.model.residual_after(rest.fit))
+            without = predicted_summary(study, linearisation, selection.model.residual_after(rest.fit))
             if (why := refusal_by_prediction(study, without, with_it)) is not None:
                 refused[i] = float(without.likelihood.sum()), why, rest
         if not refused:

@@ -148,7 +148,7 @@ class JointSearch(Search):
             share: Progress to report (0 to 1).
             tolerance: Relative gain in cost of a step that ends the fit.
         """
-        point = state.look.place
+        point = state.linearisation.point
         chosen = tuple(self.candidates[columns.variants[i].name] for i in subset.variants)
         present = {candidate.name for candidate in state.chosen}
         gone = [label for candidate in state.chosen if candidate not in chosen for label in candidate.labels]
@@ -160,17 +160,17 @@ class JointSearch(Search):
         mine = [i for i in subset.fit.columns if i in columns.base or columns.directions[i] not in self.base]
         directions = tuple(columns.directions[i] for i in mine)
         if anew:  # far from where slopes were taken
-            look = self.study.linearise(point, directions)
+            linearisation = self.study.linearise(point, directions)
         else:
-            residual = self.study.residual(point) if gone else columns.look.residual
+            residual = self.study.residual(point) if gone else columns.linearisation.residual
             slopes = columns.model.slopes[:, mine]
-            look = Linearisation(point, directions, residual, slopes, columns.look.own)
+            linearisation = Linearisation(point, directions, residual, slopes, columns.linearisation.own)
             moved = np.array(columns.directions)[list(subset.fit.columns)]  # nearly known properties have two columns
             step = np.array([subset.fit.step[moved == i].sum() for i in directions])
-            own_step = step_of_decays(self.study, columns.look, subset.fit.own)
-            look = far_step(self.study, look, self.study.used, self.prior(chosen), step, own_step)
+            own_step = step_of_decays(self.study, columns.linearisation, subset.fit.own)
+            linearisation = far_step(self.study, linearisation, self.study.used, self.prior(chosen), step, own_step)
         names = listed([effect_in_words(candidate.name) for candidate in chosen]) or "no effect"
-        reached = self.fit(look, chosen, STEP_ITERATIONS, 0, f"{stage}: fit with {names}", share, tolerance)
+        reached = self.fit(linearisation, chosen, STEP_ITERATIONS, 0, f"{stage}: fit with {names}", share, tolerance)
         return self.state(chosen, reached)
 
     def as_predicted(self, state: FitState, subset: Subset) -> bool:
@@ -191,8 +191,8 @@ class JointSearch(Search):
 
     def refit_all(self, state: FitState) -> FitState:
         """Fit a state to convergence with slopes of its own, the shapes of its effects free."""
-        look = self.study.linearise(state.look.place, self.active(state.chosen))
-        return self.refit(look, state.chosen, "final fit of all parameters", END)
+        linearisation = self.study.linearise(state.linearisation.point, self.active(state.chosen))
+        return self.refit(linearisation, state.chosen, "final fit of all parameters", END)
 
     def search(self, states: list[FitState], reach: Callable[[FitState], None]) -> FitState:
         """Select and move until the selection stays.
@@ -240,15 +240,15 @@ class JointSearch(Search):
             The likeliest model with such an oscillator, or None if none is likelier than the baseline by
             more than `MIN_LIKELIHOOD_GAIN`.
         """
-        point = self.with_starting_values(baseline.look.place, self.setup.base)
+        point = self.with_starting_values(baseline.linearisation.point, self.setup.base)
         base, width = self.study.index(self.setup.base), self.setup.prior.width
         states = [baseline]
         for candidate in self.setup.candidates:
             finder = candidate.starting_values_finder
             starts = () if finder is None else finder(self.study, point, base, width)
             for values in starts:
-                look = self.study.linearise(self.with_values(point, values), self.active((candidate,)))
-                states.append(self.refit(look, (candidate,), f"trial of {effect_in_words(candidate.name)}", BEGIN))
+                linearisation = self.study.linearise(self.with_values(point, values), self.active((candidate,)))
+                states.append(self.refit(linearisation, (candidate,), f"trial of {effect_in_words(candidate.name)}", BEGIN))
         best = self.likeliest(*states)
         return best if self.likelihood_gain(baseline, best) > MIN_LIKELIHOOD_GAIN else None
 

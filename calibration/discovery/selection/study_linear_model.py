@@ -14,18 +14,18 @@ MAX_COEFFICIENT_STEP = 1.0  # of a logarithm in one linearisation
 MAX_NUISANCE = 3.0  # standard deviations of nearly known quantities
 
 
-def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, directions: Sequence[int]) -> LinearModel:
+def linear_model(fits: EffectFits, linearisation: Linearisation, slopes: np.ndarray, directions: Sequence[int]) -> LinearModel:
     """The linear model of some columns at a linearisation's point.
 
     Args:
         fits: Study, candidates, priors.
-        look: The linearisation.
+        linearisation: The linearisation.
         slopes: The columns (n, k).
         directions: Their directions (k,).
     """
     study, prior = fits.study, fits.setup.prior
     directions, names = list(directions), np.array(study.names)[list(directions)]
-    now = study.steps(look.place.x)[directions]
+    now = study.steps(linearisation.point.x)[directions]
     low, high = (study.limits[directions] - now[:, None]).T
     base = np.arange(len(directions)) < len(fits.base)
     further = ~base & np.isin(directions, fits.base)  # of nearly known properties, beside the base's column
@@ -45,8 +45,8 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
     used = study.used[study.row_series]
     return LinearModel(
         slopes,
-        look.residual,
-        own_unknowns(study, look),
+        linearisation.residual,
+        own_unknowns(study, linearisation),
         study.pool,
         study.share * used,
         (study.pooled * study.used[:, None]).ravel(),
@@ -59,31 +59,37 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
     )
 
 
-def decays_with_unknowns(study: Study, look: Linearisation, fitted: bool) -> Iterator[tuple[int, OwnUnknowns, np.ndarray]]:
+def decays_with_unknowns(
+    study: Study, linearisation: Linearisation, fitted: bool
+) -> Iterator[tuple[int, OwnUnknowns, np.ndarray]]:
     """Decays with unknowns of their own: the fitted ones, or those held out.
 
     Args:
         study: The study.
-        look: The linearisation.
+        linearisation: The linearisation.
         fitted: Which of both.
 
     Yields:
         Number of the decay, its unknowns, and which of all (o,) they are.
     """
     for i, (rows, used) in enumerate(zip(study.spans, study.fitted_decays, strict=True)):
-        free = np.asarray(look.own[rows].any(axis=0))
+        free = np.asarray(linearisation.own[rows].any(axis=0))
         if used == fitted and free.any():
-            yield i, OwnUnknowns(rows, look.own[rows][:, free], study.own_width[i][free], look.place.own[i][free]), free
+            yield (
+                i,
+                OwnUnknowns(rows, linearisation.own[rows][:, free], study.own_width[i][free], linearisation.point.own[i][free]),
+                free,
+            )
 
 
-def own_unknowns(study: Study, look: Linearisation) -> tuple[OwnUnknowns, ...]:
+def own_unknowns(study: Study, linearisation: Linearisation) -> tuple[OwnUnknowns, ...]:
     """The fitted decays' own unknowns."""
-    return tuple(unknowns for _, unknowns, _ in decays_with_unknowns(study, look, True))
+    return tuple(unknowns for _, unknowns, _ in decays_with_unknowns(study, linearisation, True))
 
 
-def step_of_decays(study: Study, look: Linearisation, steps: Sequence[np.ndarray]) -> np.ndarray:
+def step_of_decays(study: Study, linearisation: Linearisation, steps: Sequence[np.ndarray]) -> np.ndarray:
     """Steps of all decays' own unknowns (r, o), from those of a fit."""
-    whole = np.zeros_like(look.place.own)
-    for (i, _, free), step in zip(decays_with_unknowns(study, look, True), steps, strict=True):
+    whole = np.zeros_like(linearisation.point.own)
+    for (i, _, free), step in zip(decays_with_unknowns(study, linearisation, True), steps, strict=True):
         whole[i, free] = step
     return whole

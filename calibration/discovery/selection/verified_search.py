@@ -40,13 +40,13 @@ class VerifiedSearch(JointSearch):
         state = self.without_unsupported(baseline, state)
         tried, converged = state.chosen, True
         while tried:
-            self.found.update(self.evidence(baseline, state, tried))
+            self.accepted.update(self.evidence(baseline, state, tried))
             if converged:
                 self.refuse_worsening(baseline, state)
-            refused = [candidate for candidate in tried if self.found[candidate.name].verdict.refused]
+            refused = [candidate for candidate in tried if self.accepted[candidate.name].verdict.refused]
             if refused:
-                least = min(refused, key=lambda candidate: self.found[candidate.name].verdict.worth)
-                gone = self.found.pop(least.name)
+                least = min(refused, key=lambda candidate: self.accepted[candidate.name].verdict.worth)
+                gone = self.accepted.pop(least.name)
                 self.reject(least, gone.verdict.refused, gone.verdict)
                 state, converged = gone.before, False
                 tried = tuple(candidate for candidate in refused if candidate is not least)
@@ -59,7 +59,7 @@ class VerifiedSearch(JointSearch):
                 tried = state.chosen
         self.reject_others(state)
         return replace(
-            state, chosen=tuple(sorted(state.chosen, key=lambda candidate: -self.found[candidate.name].verdict.worth))
+            state, chosen=tuple(sorted(state.chosen, key=lambda candidate: -self.accepted[candidate.name].verdict.worth))
         )
 
     def without_unsupported(self, baseline: FitState, state: FitState) -> FitState:
@@ -73,10 +73,10 @@ class VerifiedSearch(JointSearch):
         if not state.chosen or study.used.all():
             return state
         self.say("verification: held-out tests as the linear model predicts them", END)
-        look = study.linearise(state.look.place, self.active(state.chosen), "all")
-        columns = candidate_columns(self, look, state.chosen, ())
+        linearisation = study.linearise(state.linearisation.point, self.active(state.chosen), "all")
+        columns = candidate_columns(self, linearisation, state.chosen, ())
         selection = JointSelection(columns.model, columns.base, columns.variants, columns.series)
-        subset, reasons = supported_effects(study, look, selection, range(len(state.chosen)))
+        subset, reasons = supported_effects(study, linearisation, selection, range(len(state.chosen)))
         for i, why in reasons.items():
             self.reject(self.candidates[columns.variants[i].name], why)
         if not reasons:
@@ -92,19 +92,19 @@ class VerifiedSearch(JointSearch):
 
         Args:
             baseline: The fitted baseline.
-            state: The fitted model, every effect's evidence in `found`.
+            state: The fitted model, every effect's evidence in `accepted`.
         """
-        worse = worsening(self.study, baseline.left, state.left)
+        worse = worsening(self.study, baseline.summary, state.summary)
         worst = int(np.argmax(worse))
-        if worse[worst] <= 1 or any(effect.verdict.refused for effect in self.found.values()):
+        if worse[worst] <= 1 or any(effect.verdict.refused for effect in self.accepted.values()):
             return
-        name = min(self.found, key=lambda name: self.found[name].before.left.error[worst])
-        accepted, series = self.found[name], self.study.series[worst]
-        if worsening(self.study, accepted.before.left, state.left)[worst] <= 1:
+        name = min(self.accepted, key=lambda name: self.accepted[name].before.summary.error[worst])
+        accepted, series = self.accepted[name], self.study.series[worst]
+        if worsening(self.study, accepted.before.summary, state.summary)[worst] <= 1:
             return  # no single effect is the reason
-        error = [float(fitted.left.error[worst]) / series.spread for fitted in (baseline, state)]
+        error = [float(fitted.summary.error[worst]) / series.spread for fitted in (baseline, state)]
         refused = Refusal(RefusalKind.WORSE_TEST, tuple(error), f"{series.channel} of {series.test}")
-        self.found[name] = accepted._replace(verdict=accepted.verdict._replace(refused=refused))
+        self.accepted[name] = accepted._replace(verdict=accepted.verdict._replace(refused=refused))
 
     def evidence(self, baseline: FitState, state: FitState, tried: Sequence[Candidate]) -> dict[str, AcceptedEffect]:
         """Evidence of effects in a model, by simulation without each of them.
@@ -119,7 +119,7 @@ class VerifiedSearch(JointSearch):
         Returns:
             The evidence by name.
         """
-        columns = candidate_columns(self, state.look, state.chosen, ())
+        columns = candidate_columns(self, state.linearisation, state.chosen, ())
         last = JointSelection(columns.model, columns.base, columns.variants, columns.series)
         whole = last.subset(range(len(state.chosen)))
         rest = {candidate.name: last.without(whole, state.chosen.index(candidate)) for candidate in tried}

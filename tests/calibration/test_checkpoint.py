@@ -49,9 +49,9 @@ def state_of(search, chosen, seed):
     rows, series, active = len(study.row_series), len(study.series), search.active(chosen)
     place = Point(random.normal(size=len(study.start)), random.normal(size=study.own_width.shape))
     own = random.normal(size=(study.spans[-1].stop, study.own_width.shape[1]))
-    look = Linearisation(place, tuple(active), random.normal(size=rows), random.normal(size=(rows, len(active))), own)
+    linearisation = Linearisation(place, tuple(active), random.normal(size=rows), random.normal(size=(rows, len(active))), own)
     left = ResidualSummary(*random.normal(size=(2, series, 3)), random.normal(size=series))
-    return FitState(chosen, look, random.normal(size=rows), bool(seed % 2), 7 + seed, random.normal(size=series), left)
+    return FitState(chosen, linearisation, random.normal(size=rows), bool(seed % 2), 7 + seed, random.normal(size=series), left)
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def written(tmp_path_factory):
     search = fresh(campaign)
     first, second = search.setup.candidates[:2]
     state, before = state_of(search, (first,), 1), state_of(search, (), 2)
-    search.anchor(state.look.place.x)
+    search.anchor(state.linearisation.point.x)
     verdict = Verdict(31.0, 0.4, True, 12.5, math.inf, 1.5, None)
     refused = Refusal(RefusalKind.HELD_OUT_ERROR, (-0.02,), compared=ComparedData.HELD_OUT)
     search.found = {first.name: AcceptedEffect(50.5, before, state, verdict, (second.name,), math.nan, np.arange(2.0))}

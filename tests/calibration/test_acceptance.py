@@ -160,7 +160,7 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
     search = SimpleNamespace(
         scores=scores,
         rejected=rejected,
-        found={friction.name: SimpleNamespace(verdict=good)},
+        accepted={friction.name: SimpleNamespace(verdict=good)},
         setup=SimpleNamespace(candidates=[friction, drag, memory]),
     )
     state: Any = SimpleNamespace(chosen=(friction,))
@@ -177,7 +177,7 @@ def test_what_is_in_doubt_for_what_was_not_fitted():
     search = SimpleNamespace(
         scores=[],
         rejected={},
-        found={one.name: SimpleNamespace(verdict=good) for one in (drift, friction)},
+        accepted={one.name: SimpleNamespace(verdict=good) for one in (drift, friction)},
         setup=SimpleNamespace(candidates=[drift, friction]),
     )
     state: Any = SimpleNamespace(chosen=(drift, friction))
@@ -202,7 +202,7 @@ def test_a_decay_that_begins_in_motion_is_told_where_that_matters():
 
     def told(*chosen: Candidate) -> list[str]:
         return moving_release_notes(
-            SimpleNamespace(study=study), SimpleNamespace(chosen=chosen, look=SimpleNamespace(place=place))
+            SimpleNamespace(study=study), SimpleNamespace(chosen=chosen, linearisation=SimpleNamespace(point=place))
         )  # type: ignore[arg-type]
 
     assert told(rubs) == []
@@ -223,14 +223,14 @@ def test_no_step_is_taken_to_where_a_test_diverges_that_is_not_fitted(monkeypatc
         x=np.zeros(1), own=np.zeros((0, 0)), moved=lambda directions, step, own: SimpleNamespace(x=step, own=own, moved=None)
     )
     study = replace(study, directions=np.eye(1), decay_records=(), own_width=np.zeros((0, 0)))
-    look = Linearisation(moving, (0,), residual(0.0), -rows(np.stack([sine, 0 * sine]))[:, None], np.zeros((0, 0)))  # type: ignore[arg-type]
+    linearisation = Linearisation(moving, (0,), residual(0.0), -rows(np.stack([sine, 0 * sine]))[:, None], np.zeros((0, 0)))  # type: ignore[arg-type]
     monkeypatch.setattr(Study, "residual", lambda self, place: residual(float(place.x[0])))
     monkeypatch.setattr(Study, "logarithmic", np.array([False]))
     monkeypatch.setattr(Study, "limits", np.array([[-np.inf, np.inf]]))
     monkeypatch.setattr(Study, "steps", lambda self, x: np.asarray(x))
     monkeypatch.setattr(Study, "spans", ())
-    found = fit(study, look, np.array([True, False]), Prior(np.zeros(1), np.full(1, 30.0)), iterations=1)
-    assert np.isfinite(found.look.residual).all() and found.look.place is moving
+    found = fit(study, linearisation, np.array([True, False]), Prior(np.zeros(1), np.full(1, 30.0)), iterations=1)
+    assert np.isfinite(found.linearisation.residual).all() and found.linearisation.point is moving
 
 
 def test_what_is_left_is_a_root_mean_square():
@@ -262,7 +262,7 @@ def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against
     for name, value in {"reason_to_reject": refused, "worsened_motion": WORSE, "significance": 9.0}.items():
         monkeypatch.setattr(acceptance, name, lambda *_, value=value: value)
     study = SimpleNamespace(used=np.array([True]))
-    state = SimpleNamespace(likelihood=np.zeros(1), left=None, look=SimpleNamespace(place=SimpleNamespace(x=None)))
+    state = SimpleNamespace(likelihood=np.zeros(1), summary=None, linearisation=SimpleNamespace(point=SimpleNamespace(x=None)))
     grounds = SimpleNamespace(
         error_reduction=lambda: (0.5, True), likelihood_gain=20.0, relevance=lambda: 0.5, unseen=True, study=study
     )
@@ -310,17 +310,17 @@ def test_an_effect_that_makes_a_test_worse_than_declared_is_refused(worse, refus
     verdict = Verdict(50.0, 0.5, True, 50.0, 9.0, 9.0, None)
 
     def state(*error: float) -> SimpleNamespace:
-        return SimpleNamespace(left=left([1, 1], error))
+        return SimpleNamespace(summary=left([1, 1], error))
 
     found = {
         name: AcceptedEffect(1.0, before, None, verdict, (), 1.0, np.zeros(2))
         for name, before in {"memory": state(0.9, worse), "drift": state(0.9, 0.1)}.items()
     }
-    search = SimpleNamespace(study=study, found=found)
+    search = SimpleNamespace(study=study, accepted=found)
     VerifiedSearch.refuse_worsening(search, state(0.9, 0.1), state(0.1, worse))
-    assert [name for name, one in search.found.items() if one.verdict.refused] == ([refused] if refused else [])
+    assert [name for name, one in search.accepted.items() if one.verdict.refused] == ([refused] if refused else [])
     if refused:
-        reason = describe_refusal(search.found["drift"].verdict.refused)
+        reason = describe_refusal(search.accepted["drift"].verdict.refused)
         left_over = "50.0 % of the motion is left with it, 10.0 % in the baseline"
         assert reason == f"surge of t is followed worse with it ({left_over})"
 
@@ -356,13 +356,13 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
 
     class Scripted(VerifiedSearch):
         def __init__(self) -> None:
-            self.found, self.rejected = {}, {}
+            self.accepted, self.rejected = {}, {}
 
         def without_unsupported(self, baseline, reached):
             return reached
 
         def refuse_worsening(self, baseline, reached):
-            assert {one.after.chosen for one in self.found.values()} == {reached.chosen}
+            assert {one.after.chosen for one in self.accepted.values()} == {reached.chosen}
 
         def refit_all(self, reached):
             return reached
@@ -517,7 +517,7 @@ def test_a_parameter_that_is_very_clear_counts_beside_one_that_is_not(monkeypatc
         covariance, steps = np.diag(variances), 5 * np.sqrt(variances)
         study = SimpleNamespace(index=lambda names: [0, 1], steps=lambda x, steps=steps: steps)
         monkeypatch.setattr(acceptance, "predict_gain", lambda *_, c=covariance: SimpleNamespace(covariance=c))
-        state = SimpleNamespace(look=SimpleNamespace(active=(0, 1), place=SimpleNamespace(x=None)))
+        state = SimpleNamespace(linearisation=SimpleNamespace(active=(0, 1), point=SimpleNamespace(x=None)))
         assert acceptance.significance(study, one, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
 
 
