@@ -47,11 +47,11 @@ def state_of(search, chosen, seed):
     """A state of random numbers where a fit's would be."""
     study, random = search.study, np.random.default_rng(seed)
     rows, series, active = len(study.row_series), len(study.series), search.active(chosen)
-    place = Point(random.normal(size=len(study.start)), random.normal(size=study.own_width.shape))
+    point = Point(random.normal(size=len(study.start)), random.normal(size=study.own_width.shape))
     own = random.normal(size=(study.spans[-1].stop, study.own_width.shape[1]))
-    linearisation = Linearisation(place, tuple(active), random.normal(size=rows), random.normal(size=(rows, len(active))), own)
-    left = ResidualSummary(*random.normal(size=(2, series, 3)), random.normal(size=series))
-    return FitState(chosen, linearisation, random.normal(size=rows), bool(seed % 2), 7 + seed, random.normal(size=series), left)
+    linearisation = Linearisation(point, tuple(active), random.normal(size=rows), random.normal(size=(rows, len(active))), own)
+    summary = ResidualSummary(*random.normal(size=(2, series, 3)), random.normal(size=series))
+    return FitState(chosen, linearisation, random.normal(size=rows), bool(seed % 2), 7 + seed, random.normal(size=series), summary)
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def written(tmp_path_factory):
     search.anchor(state.linearisation.point.x)
     verdict = Verdict(31.0, 0.4, True, 12.5, math.inf, 1.5, None)
     refused = Refusal(RefusalKind.HELD_OUT_ERROR, (-0.02,), compared=ComparedData.HELD_OUT)
-    search.found = {first.name: AcceptedEffect(50.5, before, state, verdict, (second.name,), math.nan, np.arange(2.0))}
+    search.accepted = {first.name: AcceptedEffect(50.5, before, state, verdict, (second.name,), math.nan, np.arange(2.0))}
     search.scores = [Score(1, first.effect, first.dof, 50.5, 1, 12.0, 49.0, 0.4, verdict)]
     search.rejected = {second.name: Rejected(second.effect, second.dof, refused, None)}
     search.shortlist = [ListedVariant(first.name, {label: 0.1 for label in first.amplitudes})]
@@ -110,7 +110,7 @@ def test_what_was_reached_is_read_back_to_the_last_bit(written):
     (state,) = load_checkpoint(written.path, again, told.append)
     assert not told and same(plain(state), plain(written.state))
     assert again.earlier == 12.0 and same(again.begun, written.search.begun)
-    for name in ("found", "scores", "rejected", "notes", "shortlist"):
+    for name in ("accepted", "scores", "rejected", "notes", "shortlist"):
         assert same(plain(getattr(again, name)), plain(getattr(written.search, name))), name
 
 
