@@ -51,7 +51,8 @@ def state_of(search, chosen, seed):
     own = random.normal(size=(study.spans[-1].stop, study.own_width.shape[1]))
     linearisation = Linearisation(point, tuple(active), random.normal(size=rows), random.normal(size=(rows, len(active))), own)
     summary = ResidualSummary(*random.normal(size=(2, series, 3)), random.normal(size=series))
-    return FitState(chosen, linearisation, random.normal(size=rows), bool(seed % 2), 7 + seed, random.normal(size=series), summary)
+    residual, likelihood = random.normal(size=rows), random.normal(size=series)
+    return FitState(chosen, linearisation, residual, bool(seed % 2), 7 + seed, likelihood, summary)
 
 
 @pytest.fixture(scope="module")
