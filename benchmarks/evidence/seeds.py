@@ -89,7 +89,8 @@ def conclude(results: list[dict[str, Any]], figures: Path) -> Section:
     objective = np.array([r["objective"] for r in results])
     text = (
         "The built-in campaign `volturnus-s-decays` is made by a separate program, a plain NumPy model integrated by SciPy "
-        "(`benchmarks/reference_model.py`). It has the coefficients of the paper's Table 1, white sensor noise and imperfect "
+        "(`benchmarks/reference_model.py`). It has the coefficients of Table 1 of Sarker et al. "
+        "(IFAC MECC 2025), white sensor noise and imperfect "
         f"releases. Here it is made with {n} seeds of noise. Each campaign is calibrated from the platform file's values, "
         "which are off by up to a factor of five. *Inside* means within two of the coefficient's own standard deviations or "
         "2 % of the truth, whichever is larger. Only identifiable coefficients count; "

@@ -31,7 +31,7 @@ def _option(name: str, panel: str, text: str, default: str | bool = False, **mor
 
 
 OUT = "Folder for the results; made where absent."
-Out = Annotated[Path | None, typer.Option("--out", help=OUT, show_default="a new one, such as my-campaign-calibration")]
+Out = Annotated[Path | None, typer.Option("--out", help=OUT, show_default="a new one, named after the input and the command")]
 Campaign = Annotated[
     Path, typer.Argument(help="A campaign's folder, its campaign.yaml, or volturnus-s-decays, which is embedded.")
 ]
@@ -142,8 +142,8 @@ Calibrated = Annotated[
     Path | None,
     typer.Option(
         "--calibration",
-        help="A calibration.json or diagnosis.json, or its folder, whose values, effects and strips are used; of its own "
-        "campaign seas, too.",
+        help="A calibration.json or diagnosis.json, or its folder. Its values, effects and strip conventions are used. For its "
+        "own campaign, waves are made as there, too.",
     ),
 ]
 Step = Annotated[float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")]

@@ -89,7 +89,7 @@ def calibrate(
     """Fit a platform's coefficients to the tests marked `fit`: calibration.json, simulated.nc, figures.
 
     The free decays are fitted where there are any, else the tests in irregular and regular waves. With `--tests all` both are
-    fitted together, with static offsets and the natural periods that the manifest states.
+    fitted together, with static offsets and the natural periods that campaign.yaml states.
     """
     kind = None if tests is None else tests.value
     how: dict[str, Any] = {"objective": objective.value, "law": law.value.replace("-", "_"), "loss": loss.value, "start": start}
