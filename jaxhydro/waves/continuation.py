@@ -5,8 +5,6 @@ import numpy as np
 from jax.scipy.sparse.linalg import cg
 from jaxtyping import Array, Float
 
-from jaxhydro.quick_jit import on_device, quick_jit
-
 RIDGE = 1e-4  # share of the continuation's energy that counts beside what is outside the band
 ACCURACY, MAX_ITERATIONS = 1e-6, 1000  # of the equations, and of conjugate gradients
 END_LENGTH = 3.0  # of the shortest waves: how far from an end a record rings most
@@ -41,28 +39,21 @@ def continued(record: Float[np.ndarray, " t"], step: float, low: float, cutoff: 
     above = np.abs(record - _band_passed(record, step, 0.0, cutoff))
     if count <= 4 * edge or max(above[:edge].max(), above[-edge:].max()) <= above[edge:-edge].max():
         return record
-    extension = _extension(on_device(record), on_device(_inside(length, step, low, cutoff)), length)
-    whole = np.concatenate([record, np.asarray(extension)])
-    near = min(int(np.ceil(END_LENGTH / (cutoff * step))), count // 2)
-    ends = np.r_[:near, count - near : count]
-    missed = [float(np.linalg.norm((x - _band_passed(x, step, low, cutoff))[ends])) for x in (record, whole)]
-    return whole if missed[0] > MIN_RINGING * missed[1] else record
-
-
-@quick_jit
-def _extension(record: Float[Array, " t"], inside: Float[Array, " f"], length: int) -> Float[Array, " p"]:
-    """Samples from the record's end to `length`, by their band."""
-    count = len(record)
+    inside = jnp.asarray(_inside(length, step, low, cutoff))
 
     def passed(continuation: Float[Array, " p"], beside: Float[Array, " t"]) -> Float[Array, " p"]:
         whole = jnp.concatenate([beside, continuation])
         return jnp.fft.irfft(inside * jnp.fft.rfft(whole), length)[count:]
 
     none, nothing = jnp.zeros(length - count), jnp.zeros(count)
-    solution: Float[Array, " p"] = cg(
-        lambda p: (1 + RIDGE) * p - passed(p, nothing), passed(none, record), tol=ACCURACY, maxiter=MAX_ITERATIONS
+    extension = cg(
+        lambda p: (1 + RIDGE) * p - passed(p, nothing), passed(none, jnp.asarray(record)), tol=ACCURACY, maxiter=MAX_ITERATIONS
     )[0]
-    return solution
+    whole = np.concatenate([record, np.asarray(extension)])
+    near = min(int(np.ceil(END_LENGTH / (cutoff * step))), count // 2)
+    ends = np.r_[:near, count - near : count]
+    missed = [float(np.linalg.norm((x - _band_passed(x, step, low, cutoff))[ends])) for x in (record, whole)]
+    return whole if missed[0] > MIN_RINGING * missed[1] else record
 
 
 def _inside(count: int, step: float, low: float, cutoff: float) -> np.ndarray:
