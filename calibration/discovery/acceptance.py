@@ -222,10 +222,9 @@ def is_significant(study: Study, label: str, candidate: Candidate, state: FitSta
     The only amplitude of an effect always does; one of several has to be two standard deviations away.
     """
     i = study.names.index(label)
-    variance = predict_gain(study, state.linearisation, prior).covariance[
-        state.linearisation.active.index(i), state.linearisation.active.index(i)
-    ]
-    return len(candidate.amplitudes) == 1 or abs(float(study.steps(state.linearisation.point.x)[i])) > 2 * math.sqrt(variance)
+    linearisation = state.linearisation
+    deviation = float(predict_gain(study, linearisation, prior).deviation[linearisation.active.index(i)])
+    return len(candidate.amplitudes) == 1 or abs(float(study.steps(linearisation.point.x)[i])) > 2 * deviation
 
 
 def significance(study: Study, candidate: Candidate, state: FitState, prior: Prior) -> float:

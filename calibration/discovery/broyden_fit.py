@@ -197,11 +197,8 @@ def fit(
         least = max(tolerance, relative_tolerance * abs(now))  # of the present cost, not of the first one
         slopes_final, little = fresh or not renewals_left, 0 <= gain < least or expected < least
         if gain > 0:
-            linearisation, now, fresh = (
-                broyden_update(study, linearisation, trial.point, trial.residual, step, own_step),
-                trial.cost,
-                False,
-            )
+            linearisation = broyden_update(study, linearisation, trial.point, trial.residual, step, own_step)
+            now, fresh = trial.cost, False
             damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
             report(taken, now)
         if gain >= max(least, MIN_PREDICTED_SHARE * expected):
@@ -209,17 +206,11 @@ def fit(
         if slopes_final and little:
             settled = True
         elif not slopes_final:
-            linearisation, fresh, renewals_left, damping = (
-                study.linearise(linearisation.point, linearisation.active),
-                True,
-                renewals_left - 1,
-                1e-3,
-            )
+            linearisation = study.linearise(linearisation.point, linearisation.active)
+            fresh, renewals_left, damping = True, renewals_left - 1, 1e-3
         elif gain <= 0:
             damping = max(damping * 8, 1e-2)
             settled = damping > 1e6
-    return FitOutcome(
-        study.linearise(linearisation.point, linearisation.active) if relinearisations and not fresh else linearisation,
-        taken,
-        settled,
-    )
+    if relinearisations and not fresh:
+        linearisation = study.linearise(linearisation.point, linearisation.active)
+    return FitOutcome(linearisation, taken, settled)

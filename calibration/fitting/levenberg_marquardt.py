@@ -79,14 +79,14 @@ class DescentState(NamedTuple):
 
 
 @eqx.filter_jit
-def _at(objective: Objective, unknowns: Unknowns, args: PyTree) -> tuple[Any, PyTree]:
-    """The objective; a function of its own, so that it is traced once for both programs below."""
+def _evaluate(objective: Objective, unknowns: Unknowns, args: PyTree) -> tuple[Any, PyTree]:
+    """Evaluate the objective. `_begin` and `_step` share this function, so that JAX traces it once."""
     return objective(unknowns, args)
 
 
 @eqx.filter_jit
 def _begin(objective: Objective, unknowns: Unknowns, args: PyTree, trust: Array) -> _State:
-    shapes = eqx.filter_eval_shape(_at, objective, unknowns, args)
+    shapes = eqx.filter_eval_shape(_evaluate, objective, unknowns, args)
     info, aux = jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
     search = eqx.tree_at(lambda s: s.step_size, SEARCH.init(unknowns, info), trust)
     return _State(_Point(unknowns, info, aux), unknowns, search, jnp.array(True))
@@ -95,7 +95,7 @@ def _begin(objective: Objective, unknowns: Unknowns, args: PyTree, trust: Array)
 @eqx.filter_jit
 def _step(objective: Objective, args: PyTree, state: _State) -> tuple[_State, Bool[Array, ""]]:
     point, trial, search, first = state
-    candidate = _Point(trial, *_at(objective, trial, args))
+    candidate = _Point(trial, *_evaluate(objective, trial, args))
     size, accepted, _, search = SEARCH.step(first, point.unknowns, trial, point.info, candidate.info, search)
     point = jax.tree.map(lambda new, old: jnp.where(accepted, new, old), candidate, point)
     step, _ = DESCENT.step(size, DESCENT.query(point.unknowns, point.info, None))

@@ -102,7 +102,7 @@ class HeadingInterpolation(eqx.Module):
 
 @quick_jit
 def _at(table: HeadingInterpolation, heading: Float[Array, ""]) -> Complex[Array, "..."]:
-    """`HeadingInterpolation.at`."""
+    """Values of a table at a heading (rad), in one compiled program."""
     index, offset = table.locate(heading)
     cubic = table.coefficient[:, index]
     return ((cubic[0] * offset + cubic[1]) * offset + cubic[2]) * offset + cubic[3]

@@ -123,7 +123,7 @@ def bound_waves(
 def _bound_waves(
     waves: Components, environment: Environment, kinds: Sequence[Kind], set_down: bool, highest_difference: float | None
 ) -> PlaneWaves:
-    """`bound_waves`."""
+    """Bound waves of some kinds, in one compiled program."""
     omega, vector, amplitude = waves.omega, waves.vector(), waves.complex_amplitude()
     bound = []
     if "sum" in kinds:

@@ -29,7 +29,7 @@ from calibration.formatting import listed
 
 MAX_ROUNDS = 6  # linearisations along candidates
 STEP_ITERATIONS = 15  # iterations of a fit with the slopes at hand
-ROUND_SHARE = 0.3  # of the rounds' progress that is left: what a round adds
+ROUND_SHARE = 0.3  # of the progress left to all rounds, that one round is reckoned with
 FREE_ROUNDS = 3  # rounds after which what most sets have stays
 WHOLE_ROUNDS = 2  # rounds along all candidates; later ones are along those that help, or are in probable sets
 BEGIN, END = 0.2, 0.55  # progress of the rounds
