@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 PACKAGES = ("jaxhydro", "calibration")
+NO_FILE = "no file"
 LIBRARIES = ("jaxhydro", "jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix", "lineax")
 
 
@@ -56,16 +57,37 @@ def content_hash(*inputs: Any) -> str:
     source is taken, too. Raises TypeError for what has no content that can be told.
     """
     digest = hashlib.sha256()
-    source_files: dict[str, None] = {}  # files that classes and functions from elsewhere are written in
+    source_files: dict[str, None] = {}
     for part in _content(inputs, source_files, ()):
         digest.update(part + b"\0")
     for path in source_files:
-        digest.update(Path(path).read_bytes() + b"\0")
+        if path != NO_FILE:
+            digest.update(Path(path).read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+def installed_content_hash(*inputs: Any) -> str:
+    """`content_hash` of what the packages and installed libraries alone define.
+
+    Raises TypeError where a class or function is a user's own: in a running process it may be older than its file.
+    """
+    digest = hashlib.sha256()
+    source_files: dict[str, None] = {}
+    for part in _content(inputs, source_files, ()):
+        digest.update(part + b"\0")
+    if source_files:
+        raise TypeError(f"a class or function is defined in {', '.join(source_files)}")
     return digest.hexdigest()
 
 
 def _content(value: Any, source_files: dict[str, None], within: tuple[int, ...]) -> Iterator[bytes]:
-    """The content of a value, piece by piece; `within` are the ids of what holds it."""
+    """The content of a value, piece by piece.
+
+    Args:
+        value: The value.
+        source_files: Takes the files that classes and functions from elsewhere are written in.
+        within: Ids of what holds the value.
+    """
     if value is None or type(value) in (bool, int, float, complex, str, bytes):
         yield f"{type(value).__name__} {value!r}".encode()
         return
@@ -151,4 +173,6 @@ def _named(definition: Any, source_files: dict[str, None]) -> bytes:
             file = None
         if file and "site-packages" not in Path(file).parts and Path(file).is_file():
             source_files[file] = None
+        elif root == "__main__" or not getattr(sys.modules.get(module), "__file__", None):  # of a notebook, or a console
+            source_files[NO_FILE] = None
     return f"{module}.{getattr(definition, '__qualname__', definition)}".encode()

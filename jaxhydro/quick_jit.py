@@ -5,14 +5,15 @@ The jit functions are for programs that run a few times, or in threads.
 
 import threading
 from collections.abc import Callable, Hashable
-from functools import update_wrapper, wraps
+from functools import update_wrapper
 from typing import Any, Generic, ParamSpec, TypeVar
 
 import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 from numpy.typing import ArrayLike
+
+from jaxhydro.exported_programs import exported_jit
 
 UNOPTIMISED = {"xla_backend_optimization_level": 0, "xla_llvm_disable_expensive_passes": True}
 P = ParamSpec("P")
@@ -20,7 +21,7 @@ R = TypeVar("R")
 
 
 def quick_jit(fun: Callable[P, R]) -> Callable[P, R]:
-    """`equinox.filter_jit` that compiles without optimisation, which takes half the time.
+    """`exported_jit` that compiles without optimisation, which takes half the time.
 
     For statics and set-up, whose compilation takes a thousand times as long as their run. Within another program that is
     traced, the function is part of that program, and is optimised with it.
@@ -28,17 +29,7 @@ def quick_jit(fun: Callable[P, R]) -> Callable[P, R]:
     Args:
         fun: The function.
     """
-    alone: Callable[P, R] = eqx.filter_jit(fun, compiler_options=UNOPTIMISED)  # type: ignore[call-overload]
-    within = eqx.filter_jit(fun)  # JAX takes compiler options at the top level only
-
-    @wraps(fun)
-    def compiled(*args: P.args, **kwargs: P.kwargs) -> R:
-        fresh = jnp.zeros(())  # a tracer where a program is traced
-        traced = any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves((fresh, args, kwargs)))
-        result: R = (within if traced else alone)(*args, **kwargs)
-        return result
-
-    return compiled
+    return exported_jit(fun, UNOPTIMISED)
 
 
 class JitOnce(Generic[P, R]):

@@ -16,8 +16,10 @@ for folder in (TESTS.parent, *(TESTS / name for name in ("fixtures", "jaxhydro",
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
-import jaxhydro  # noqa: E402, F401
+import jaxhydro.exported_programs  # noqa: E402
 
+# tests replace functions of the packages, and a program that was exported before has the functions themselves
+jaxhydro.exported_programs.switched_on = False
 os.environ.pop("COLUMNS", None)  # of a pytest worker: tables are as wide as where there is no terminal
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy import ndimage, signal
+import scipy  # its parts are imported when they are used: that takes a second
 
 from calibration.campaign.signals import noise_level
 
@@ -68,7 +68,7 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
     x = np.interp(even, time, values)
     noise = noise_level(even, x)
     period = _period(x, step, noise)
-    slow = ndimage.uniform_filter1d(x, min(max(round(period / step), 1), len(x))) if np.isfinite(period) else x
+    slow = scipy.ndimage.uniform_filter1d(x, min(max(round(period / step), 1), len(x))) if np.isfinite(period) else x
     apart = np.diff(_turning_points(slow, 0, len(x), SLOW_MOTION_SHARE * float(np.ptp(x))))
     if len(apart) and float(np.median(apart)) < 4 * period / step:  # the fast motion is not what was released
         period = _period(slow, step, 0.0)
@@ -77,7 +77,7 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
         STILLNESS_DURATION * period, 1.5 * step
     ):
         return whole
-    y = ndimage.uniform_filter1d(x, max(int(SMOOTHING_DURATION * period / step), 1), mode="nearest")
+    y = scipy.ndimage.uniform_filter1d(x, max(int(SMOOTHING_DURATION * period / step), 1), mode="nearest")
     decay = _first_decay(x, y, period / step, noise)
     if decay is None:
         return whole
@@ -213,7 +213,7 @@ def _find_release(x: np.ndarray, first: int, last: int, fall: float, cycle: int)
 def _turning_points(y: np.ndarray, begin: int, end: int, prominence: float) -> np.ndarray:
     """Where a motion turns, high and low in turn."""
     part = y[begin:end]
-    high, low = (signal.find_peaks(sign * part, prominence=prominence)[0] for sign in (1, -1))
+    high, low = (scipy.signal.find_peaks(sign * part, prominence=prominence)[0] for sign in (1, -1))
     both = sorted([*((k, 1) for k in high), *((k, -1) for k in low)])
     turns: list[tuple[int, int]] = []
     for index, sign in both:
@@ -228,8 +228,8 @@ def _turning_points(y: np.ndarray, begin: int, end: int, prominence: float) -> n
 def _range(y: np.ndarray, width: int) -> np.ndarray:
     """(n,) largest less smallest value from each sample on, over `width` samples."""
     shift = -(width // 2)
-    high = ndimage.maximum_filter1d(y, width, origin=shift, mode="nearest")
-    return high - ndimage.minimum_filter1d(y, width, origin=shift, mode="nearest")  # type: ignore[no-any-return]
+    high = scipy.ndimage.maximum_filter1d(y, width, origin=shift, mode="nearest")
+    return high - scipy.ndimage.minimum_filter1d(y, width, origin=shift, mode="nearest")  # type: ignore[no-any-return]
 
 
 def _true_stretches(flag: np.ndarray) -> list[tuple[int, int]]:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from calibration.campaign.manifest import Manifest
 from calibration.campaign.manifest_sections import IN_WAVES, WAVE, Channel, Test
 from calibration.campaign.release import FreeMotion, free_motion
 from calibration.campaign.signals import missing_code, resolution
 from jaxhydro.errors import InputError, Problem, suggest
-from jaxhydro.interop.data_files import read_table
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _LARGEST_VALUE = 1e15  # what is larger stands for a missing value
 
@@ -64,6 +66,8 @@ def valid_values(values: np.ndarray) -> np.ndarray:
 
 def read_series(manifest: Manifest, folder: Path) -> tuple[Series, ...]:
     """Every test as it stands in its file, each file read once. Raises InputError with all problems."""
+    from jaxhydro.interop.data_files import read_table  # readers take a second to import
+
     tables: dict[str, pd.DataFrame] = {}
     problems: list[Problem] = []
     series: list[Series] = []

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 
 import numpy as np
-import pandas as pd
 
 SPIKE_DEVIATIONS = 8.0  # robust standard deviations
 SPIKE_MARGIN = 2.0  # the same, or steps of the last digit: a spike is that far beyond both neighbours
@@ -145,6 +144,8 @@ def spikes(values: np.ndarray, step: np.ndarray) -> np.ndarray:
     """
     if len(values) < 12:
         return np.arange(0)
+    import pandas as pd
+
     middle, step = values[2:-2], step[2:-2]
     before, after = values[1:-3], values[3:-1]
     off = middle - (4 * (before + after) - values[:-4] - values[4:]) / 6

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy  # its parts are imported when they are used: that takes a second
 
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import Problem
@@ -45,7 +45,8 @@ def move_to_reference(values: Mapping[str, np.ndarray], point: Point) -> dict[st
     """
     none = np.zeros(len(next(iter(values.values()))))
     yaw, pitch, roll = (values.get(name, none) for name in ("yaw", "pitch", "roll"))
-    turned = Rotation.from_euler("ZYX", np.stack([yaw, pitch, roll], axis=1)).apply(point) - np.asarray(point)
+    rotation = scipy.spatial.transform.Rotation.from_euler("ZYX", np.stack([yaw, pitch, roll], axis=1))
+    turned = rotation.apply(point) - np.asarray(point)
     return {name: motion - turned[:, DOFS.index(name)] if name in LEVERS else motion for name, motion in values.items()}
 
 

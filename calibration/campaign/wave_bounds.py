@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage
+import scipy  # its parts are imported when they are used: that takes a second
 
 from calibration.campaign.signals import dominant_period, noise_level
 
@@ -32,7 +32,7 @@ def wave_span(time: np.ndarray, wave: np.ndarray, period: float) -> tuple[float,
     if len(wave) < 4 * width:
         return float(time[0]), float(time[-1])
     centred = wave - np.median(wave)
-    power = ndimage.uniform_filter1d(centred**2, width, mode="reflect")
+    power = scipy.ndimage.uniform_filter1d(centred**2, width, mode="reflect")
     usual = np.flatnonzero(power > QUIET_SHARE**2 * np.median(power))
     first, last = int(usual[0]), int(usual[-1])
     inside = round((0.5 - QUIET_SHARE**2) * width)  # a mean over `width` sees waves that far away

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import t as student
+import scipy  # its parts are imported when they are used: that takes a second
 
 from calibration.campaign.signals import noise_level
 from calibration.decay_analysis.decrements import Decrements, decrements
@@ -147,7 +147,7 @@ def linear_quadratic(pairs: Decrements) -> LinearQuadratic:
     freedom = count - 2
     variance = float(np.sum((target - rows @ solution) ** 2)) / freedom
     covariance = variance * np.linalg.inv(rows.T @ rows) / np.outer(scale, scale)
-    best, half = solution / scale, student.ppf(0.5 + CONFIDENCE / 2, freedom) * np.sqrt(np.diag(covariance))
+    best, half = solution / scale, scipy.stats.t.ppf(0.5 + CONFIDENCE / 2, freedom) * np.sqrt(np.diag(covariance))
     warnings = tuple(
         f"{name} damping is negative: {value:.3g}, {'within' if value + width >= 0 else 'beyond'} its uncertainty"
         for name, value, width in zip(_TERMS, best, half)
@@ -179,7 +179,7 @@ def equivalent_damping(fit: LinearQuadratic, amplitude: np.ndarray | float, iner
     a = np.asarray(amplitude, dtype=float)
     row = np.stack([np.ones_like(a), 16 / (3 * fit.period) * a], axis=-1)
     value = row @ np.array([fit.linear.value, fit.quadratic.value])
-    width = student.ppf(0.5 + CONFIDENCE / 2, fit.freedom) * np.sqrt(np.einsum("...i,ij,...j", row, fit.covariance, row))
+    width = scipy.stats.t.ppf(0.5 + CONFIDENCE / 2, fit.freedom) * np.sqrt(np.einsum("...i,ij,...j", row, fit.covariance, row))
     return EstimateWithInterval(inertia * value, inertia * (value - width), inertia * (value + width))
 
 

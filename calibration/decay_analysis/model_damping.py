@@ -6,7 +6,6 @@ The equation is M x'' + B_lin x' + B_quad x'|x'| + C x = 0, M with added mass. S
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -15,6 +14,7 @@ from jaxtyping import Array, Float
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.statics import equilibrium, linearised, natural_modes, widths
 from jaxhydro.environment import DOFS
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.waves.sea import StillWater
 
 # m/s, rad/s, times size over pace of the platform: two give both coefficients, the third shows that there is nothing but these
@@ -84,7 +84,7 @@ def _resistance(model: Model, position: Array, rates: Array, speeds: Array) -> A
     return jax.vmap(lambda speed: 0.5 * (force(-speed) - force(speed)))(speeds)
 
 
-@eqx.filter_jit
+@exported_jit
 def _damping(model: Model, position: Array, rates: Array) -> tuple[Array, Array, Array, dict[str, Array]]:
     speeds = jnp.array(SPEEDS) * model.size / model.pace
 

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-import scipy  # scipy.stats is imported when it is used
+import scipy  # its parts are imported when they are used: that takes a second
 
 from jaxhydro.dynamics.response import decay_cycles
 

@@ -15,7 +15,6 @@ References:
     Whittle 1953: their likelihood is the sum over frequencies of |r|^2 / P + ln P.
 """
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -26,12 +25,13 @@ from calibration.discovery.linearisations import Point
 from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.study import Study
 from jaxhydro.dynamics.model import State
+from jaxhydro.exported_programs import exported_jit
 
 MAX_INSTANTS = 256  # instants at which forces are linearised
 SPECTRUM_ITERATIONS = 6  # iterations of the force's spectrum
 
 
-@eqx.filter_jit
+@exported_jit
 def _tangents(record: SeaRecord, x: Float[Array, " p"]) -> Float[Array, "6 12"]:
     model, _, grid = record.simulated(x)
     stride = max(1, record.steps // MAX_INSTANTS)

@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal.windows import tukey
+import scipy  # its parts are imported when they are used: that takes a second
 
 BAND_GROWTH = 1.4  # ratio of a band's edge to the one before
 MIN_LINES_PER_BAND = 4  # Fourier lines
@@ -102,7 +102,7 @@ class FourierRows(NamedTuple):
         series, line = np.nonzero(member.any(axis=1))
         scale = np.sqrt(np.where(line == 0, 1.0, 2.0) / samples)
         band = member.argmax(axis=1)[series, line]
-        taper = tukey(samples, tapered)
+        taper = scipy.signal.windows.tukey(samples, tapered)
         taper /= np.sqrt(np.mean(taper**2))
         return cls(len(cuts), series * lines + line, scale, np.repeat(series, 2), np.repeat(band, 2), lines, taper)
 

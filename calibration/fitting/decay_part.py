@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from typing import ClassVar
 
-import equinox as eqx
 import jax
 import numpy as np
 
@@ -15,6 +14,7 @@ from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.decays import DecayData, DecayProblem
 from calibration.result import Series, TestFit
 from jaxhydro.environment import DOFS
+from jaxhydro.exported_programs import exported_jit
 
 # weight of a record's other channels against the released one, both in metres of the hull
 SIDE_CHANNEL_WEIGHT = 0.1
@@ -176,7 +176,7 @@ def samples_until(data: DecayData, until) -> np.ndarray:
     return (np.asarray(data.present) * (np.asarray(data.time) <= np.asarray(until)[:, None])[:, None]).sum(axis=-1)
 
 
-@eqx.filter_jit
+@exported_jit
 def _motions(problem: DecayProblem, unknowns: Unknowns, x):
     return jax.lax.map(lambda inputs: problem.motion(x, *inputs), (unknowns.own, problem.data))
 

@@ -12,6 +12,7 @@ from jaxtyping import Array, Bool, PyTree
 
 from calibration.fitting.normal_equations import clipped
 from calibration.residuals.abstract_residual import Unknowns
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.interrupts import stop_if_asked
 
 LONGEST_STEP = 0.7  # coordinates are logarithms and relative motions: 1 changes a coefficient by a factor of e
@@ -78,13 +79,13 @@ class DescentState(NamedTuple):
     settled: bool
 
 
-@eqx.filter_jit
+@exported_jit
 def _evaluate(objective: Objective, unknowns: Unknowns, args: PyTree) -> tuple[Any, PyTree]:
     """Evaluate the objective. `_begin` and `_step` share this function, so that JAX traces it once."""
     return objective(unknowns, args)
 
 
-@eqx.filter_jit
+@exported_jit
 def _begin(objective: Objective, unknowns: Unknowns, args: PyTree, trust: Array) -> _State:
     shapes = eqx.filter_eval_shape(_evaluate, objective, unknowns, args)
     info, aux = jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
@@ -92,7 +93,7 @@ def _begin(objective: Objective, unknowns: Unknowns, args: PyTree, trust: Array)
     return _State(_Point(unknowns, info, aux), unknowns, search, jnp.array(True))
 
 
-@eqx.filter_jit
+@exported_jit
 def _step(objective: Objective, args: PyTree, state: _State) -> tuple[_State, Bool[Array, ""]]:
     point, trial, search, first = state
     candidate = _Point(trial, *_evaluate(objective, trial, args))

@@ -2,13 +2,13 @@
 
 from typing import ClassVar
 
-import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
 from calibration.fitting.weighted_residuals import AbstractPart, Kind, Loss, ResidualErrors, mean_square
 from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.static import OffsetProblem, PeriodProblem
+from jaxhydro.exported_programs import exported_jit
 
 MIN_OFFSET_ERROR = 1e-3  # share of the held motion below which a fit proves nothing
 
@@ -52,6 +52,6 @@ class PeriodPart(AbstractPart):
         return np.zeros(0), np.zeros(0)
 
 
-@eqx.filter_jit
+@exported_jit
 def _residuals(problem: OffsetProblem, x: Float[Array, " p"]) -> tuple[Float[Array, " n"]]:
     return problem.residuals(x)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy  # its parts are imported when they are used: that takes a second
 
 from calibration.identifiability.information import MIN_VARIANCE
 
@@ -169,7 +169,9 @@ def _whittle(spectra: Sequence[Periodogram], variance: np.ndarray) -> tuple[Nois
         (np.log(0.3 * first), np.log(last)),
     ]
     starts = [(centre, 2 * first), (centre, 0.3 * centre), (0.1 * first, first), (0.1 * first, 0.1 * last)]
-    tried = [minimize(misfit, np.log([floor, top, *start]), method="L-BFGS-B", bounds=limits) for start in starts]
+    tried = [
+        scipy.optimize.minimize(misfit, np.log([floor, top, *start]), method="L-BFGS-B", bounds=limits) for start in starts
+    ]
     best, white = min(tried, key=lambda result: result.fun), NoiseColour(1.0, 0.0, 0.0, float(first))
     flat = level + float(np.sum(half * power))
     # three numbers more than white noise has, one of them searched for over all frequencies: among so many one stands out by

@@ -1,8 +1,8 @@
 """Figures of uncertainty: likelihood profiles, and draws of two parameters."""
 
 import numpy as np
+import scipy  # its parts are imported when they are used: that takes a second
 from matplotlib.figure import Figure
-from scipy.stats import chi2
 
 from calibration.formatting import readable_unit
 from calibration.uncertainty.bootstrap_draws import Bootstrap
@@ -15,7 +15,7 @@ def profile_figure(profile: Profile) -> Figure:
     """Rise of -2 log likelihood along a parameter, its level and interval, and the covariance's parabola."""
     figure = Figure(figsize=(WIDTH, 2.2), layout="constrained")
     ax = figure.subplots()
-    limit, top = float(chi2.ppf(profile.level, 1)), 1.6 * float(chi2.ppf(profile.level, 1))
+    limit, top = float(scipy.stats.chi2.ppf(profile.level, 1)), 1.6 * float(scipy.stats.chi2.ppf(profile.level, 1))
     artists = {"profile": ax.plot(profile.grid, profile.drop, "o-", ms=3, color=SIMULATED, mew=0)[0]}
     middle = profile.coordinate[int(np.argmin(np.abs(profile.grid - profile.estimate)))]
     half = 0.5 * np.ptp(np.interp(profile.laplace, profile.grid, profile.coordinate))
@@ -40,7 +40,7 @@ def draws_figure(draws: Bootstrap | Samples, first: str, second: str) -> Figure:
     points = draws.value.reshape(-1, width)[:, indices]
     angle = np.linspace(0, 2 * np.pi, 100)
     covariance = likely.covariance[np.ix_(indices, indices)]
-    ring = np.linalg.cholesky(covariance) @ np.stack([np.cos(angle), np.sin(angle)]) * np.sqrt(chi2.ppf(0.95, 2))
+    ring = np.linalg.cholesky(covariance) @ np.stack([np.cos(angle), np.sin(angle)]) * np.sqrt(scipy.stats.chi2.ppf(0.95, 2))
     edge = [[likely.value(label, likely.estimate[i] + x) for x in row] for label, i, row in zip((first, second), indices, ring)]
     figure = Figure(figsize=(WIDTH, 2.6), layout="constrained")
     ax = figure.subplots()

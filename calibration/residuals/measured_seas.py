@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
@@ -28,6 +27,7 @@ from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.dynamics.table_ranges import heading_fault
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.hull.hull import Hull
 
 NO_ZERO = "the campaign states no `zero`: motions count from the reference position"
@@ -125,7 +125,7 @@ def compare(
     return Comparison(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step, model.hull)
 
 
-_observed = eqx.filter_jit(observe)
+_observed = exported_jit(observe)
 
 
 class Diverged(ArithmeticError):

@@ -30,6 +30,7 @@ from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.environment import DOFS
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.waves.sea_state import SeaState
 from jaxhydro.waves.support_sea import SupportSea
 
@@ -168,7 +169,7 @@ class SeaProblem(AbstractGroupedResidual):
         return (*([jnp.concatenate(energies)] if energies else []), *motions), (jnp.stack(far) <= 0).all()
 
 
-@eqx.filter_jit
+@exported_jit
 def residuals_and_reach(problem: SeaProblem, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
     """`SeaProblem.residuals_and_reach`, compiled."""
     return problem.residuals_and_reach(x)

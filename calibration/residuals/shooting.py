@@ -37,6 +37,7 @@ from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import motion_behind, observe
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
 from jaxhydro.environment import DOFS
+from jaxhydro.exported_programs import exported_jit
 
 
 class BlockResiduals(NamedTuple):
@@ -172,7 +173,7 @@ def _of_pair(function: Callable[[Array, Blocks, SeaRun], Any], run: SeaRun, pair
     return function(*pair, run)
 
 
-@eqx.filter_jit
+@exported_jit
 def simulate_blocks(problem: BlockProblem, unknowns: Unknowns) -> BlockResiduals:
     """`BlockProblem.block_residuals`, compiled."""
     return problem.block_residuals(unknowns)

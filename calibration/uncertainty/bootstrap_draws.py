@@ -14,8 +14,8 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+import scipy  # its parts are imported when they are used: that takes a second
 from jaxtyping import Array, Float
-from scipy.stats import norm
 
 from calibration.fitting.normal_equations import LeastSquares, clipped, normal_equations
 from calibration.identifiability.information import WEAK_PRIOR_ROUNDING, pseudo_inverse
@@ -93,7 +93,7 @@ class Bootstrap:
         i, sides = self.likelihood.index(label), [0.5 - 0.5 * level, 0.5 + 0.5 * level]
         ends = np.quantile(self.coordinate[:, i], sides)
         if kind == "normal":
-            ends = self.estimate[i] + norm.ppf(sides) * self.deviation()[i]
+            ends = self.estimate[i] + scipy.stats.norm.ppf(sides) * self.deviation()[i]
         if kind == "basic":
             ends = (2 * self.estimate[i] - ends)[::-1]
         low, high = sorted(self.likelihood.value(label, float(x)) for x in ends)

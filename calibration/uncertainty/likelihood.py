@@ -10,8 +10,8 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+import scipy  # its parts are imported when they are used: that takes a second
 from jaxtyping import Array, Float
-from scipy.stats import norm
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.fitting.decay_fit import prepare_fit, run_fit
@@ -119,7 +119,7 @@ class Likelihood:
         Returns:
             Lower and upper end.
         """
-        i, z = self.index(label), float(norm.ppf(0.5 + 0.5 * level))
+        i, z = self.index(label), float(scipy.stats.norm.ppf(0.5 + 0.5 * level))
         reach = z * self.deviation(white)[i]
         low, high = sorted(self.value(label, self.estimate[i] + sign * reach) for sign in (-1, 1))
         return low, high

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import jax.numpy as jnp
 import numpy as np
 import optimistix as optx
-from scipy.interpolate import PchipInterpolator
-from scipy.stats import chi2
+import scipy  # its parts are imported when they are used: that takes a second
 
 from calibration.fitting.levenberg_marquardt import descend
 from calibration.fitting.normal_equations import ArrowMatrix, LeastSquares, normal_equations
@@ -103,7 +102,7 @@ class _Refit:
             (fit.decays.problem,), (jnp.asarray(self.weight),), jnp.asarray(self.mean), jnp.asarray(self.ridge)
         )
         self.size = 1.0  # of Q, for a tolerance relative to it: a fit normalises its weights so
-        self.gain = MAX_REFIT_SHARE * self.nu * float(chi2.ppf(level, 1))
+        self.gain = MAX_REFIT_SHARE * self.nu * float(scipy.stats.chi2.ppf(level, 1))
 
     def moved(self, unknowns: Unknowns, step: float) -> Unknowns:
         """Unknowns after a step of the held coordinate, to first order."""
@@ -155,7 +154,7 @@ def profile(likelihood: Likelihood, label: str, level: float = DEFAULT_LEVEL) ->
     x, cost = x[np.isfinite(cost)], cost[np.isfinite(cost)]
     # a parameter that is hardly known may have been left short of the lowest point
     drop = (cost - cost.min()) / refit.nu
-    limit, middle = float(np.sqrt(chi2.ppf(level, 1))), int(np.argmin(cost))
+    limit, middle = float(np.sqrt(scipy.stats.chi2.ppf(level, 1))), int(np.argmin(cost))
     ends = [_crossing(x[: middle + 1][::-1], drop[: middle + 1][::-1], limit), _crossing(x[middle:], drop[middle:], limit)]
     lower, upper = (None if end is None else likelihood.value(label, end) for end in ends)
     about = likelihood.fit.decays.problem.model.about(label)
@@ -185,7 +184,7 @@ def _outward(
     level: float,
 ) -> dict[float, float]:
     """Q by coordinate on one side, its points even in the signed root."""
-    transform, limit = likelihood.free(label).transform, float(np.sqrt(chi2.ppf(level, 1)))
+    transform, limit = likelihood.free(label).transform, float(np.sqrt(scipy.stats.chi2.ppf(level, 1)))
     points: dict[float, float] = {}
     root, x = 0.0, estimate
     step = SIGNED_ROOT_STEP * float(likelihood.deviation()[refit.index])
@@ -217,4 +216,4 @@ def _crossing(x: np.ndarray, drop: np.ndarray, limit: float) -> float | None:
     last = int(beyond[0])
     rising = [0]
     rising += [k for k in range(1, last + 1) if root[k] > root[rising[-1]] + 1e-9]
-    return float(PchipInterpolator(root[rising], x[rising])(limit)) if len(rising) > 1 else None
+    return float(scipy.interpolate.PchipInterpolator(root[rising], x[rising])(limit)) if len(rising) > 1 else None

@@ -3,7 +3,6 @@
 import math
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -14,6 +13,7 @@ from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.response import Response
 from jaxhydro.dynamics.table_ranges import heading_fault
 from jaxhydro.dynamics.time_steps import steps_in
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.integrators import adams_bashforth
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.rotations import rotation
@@ -34,7 +34,7 @@ def excursion_of(model: Model) -> float:
     return EXCURSION * float(model.size)
 
 
-@eqx.filter_jit
+@exported_jit
 def simulate_steps(
     model: Model,
     sea: AbstractSea,
@@ -176,4 +176,4 @@ def farthest(position: Float[Array, "t 6"], points: Float[Array, "3 p"], sea: Su
     return jnp.abs(along).max()
 
 
-_farthest = eqx.filter_jit(farthest)
+_farthest = exported_jit(farthest)

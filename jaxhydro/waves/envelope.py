@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.quadratic_transfer import Transfer
 
@@ -45,7 +46,7 @@ class Envelope(eqx.Module):
         return share @ self.series[jnp.minimum(base + jnp.arange(4), last)]
 
 
-@eqx.filter_jit
+@exported_jit
 def envelope(
     waves: Components,
     environment: Environment,

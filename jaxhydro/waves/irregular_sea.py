@@ -11,6 +11,7 @@ from jaxtyping import Array, Complex, Float
 
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.quick_jit import as_data, on_device, quick_jit
 from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.directional_transfer import AnyTransfer
@@ -24,7 +25,7 @@ from jaxhydro.waves.supports import Box, supports
 from jaxhydro.waves.wave_sea import WaveSea
 
 Acting = Literal["everywhere", "at the origin", "nowhere"]
-_elevation = eqx.filter_jit(elevation_spectrum)
+_elevation = exported_jit(elevation_spectrum)
 ONE_HEADING = 1e-12  # rad, by which headings of a long-crested sea may differ
 EXCURSION = 20.0  # m times the platform's size, that it may drift along the waves before its sea is prepared anew
 

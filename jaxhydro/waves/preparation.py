@@ -9,6 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Complex, Float
 
 from jaxhydro.environment import Environment
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.envelope import envelope
@@ -75,7 +76,7 @@ class Preparation(eqx.Module):
         )
 
 
-@eqx.filter_jit
+@exported_jit
 def _spectrum(
     waves: Components,
     environment: Environment,
@@ -138,7 +139,7 @@ def _spectrum(
     return bound.at[first : last + 1].add(spectrum)
 
 
-@eqx.filter_jit
+@exported_jit
 def _series(
     spectrum: Complex[Array, "b f r"], fundamental: float, size: int, clock: Clock, ramp: float
 ) -> tuple[Float[Array, "t s f 2*r"], Float[Array, "h f 2*r"] | None]:

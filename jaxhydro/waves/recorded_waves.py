@@ -6,13 +6,13 @@ They are separated once per record, in NumPy; the results go into jitted code.
 import math
 from typing import NamedTuple
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.continuation import continued
 from jaxhydro.waves.dispersion import wavenumber
@@ -26,7 +26,7 @@ MIN_CONTINUATION = 20.0  # of the shortest waves: how far records are continued 
 MAX_LENGTHENING = 1.5  # times a record, that it may have when continued
 MAX_ROUNDS = 30  # of the iteration for the first-order part; 4 to 8 are usual, more in steep seas
 
-_second_order = eqx.filter_jit(elevation_spectrum)  # once per band and record length, not once per round
+_second_order = exported_jit(elevation_spectrum)  # once per band and record length, not once per round
 
 
 class Separation(NamedTuple):

@@ -196,6 +196,7 @@ def test_a_diagnosis_is_an_answer(benchmark: Path):
     assert scored(benchmark, "--answered-only")["table"]["named_or_in_set"]["all"] == {"count": 1, "of": 1}
 
 
+@pytest.mark.slow
 def test_complete_diagnoses_are_not_run_again(tmp_path: Path):
     """A command that fails is told, with its last message; what an earlier run completed is taken."""
     done = tmp_path / "results" / "done"

@@ -116,6 +116,7 @@ def test_closed_forms_of_the_ship_section() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_spar_pitches_about_a_point_far_below() -> None:
     """The mode moves the reference point by more than its angle: its strain energy is that of pitch."""
     spar, own = model("oc3-hywind"), reference("oc3-hywind").periods()

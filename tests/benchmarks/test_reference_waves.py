@@ -377,6 +377,7 @@ def test_the_phase_of_diffraction_matters():
     assert 0.05 < np.sqrt(((found - series) ** 2).mean()) / series.std() < 0.09
 
 
+@pytest.mark.slow
 @needs_openfast
 @pytest.mark.parametrize("case", ["c1", "c2", "c3"])
 def test_free_hull_against_openfast(case):

@@ -780,6 +780,7 @@ odd = st.one_of(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=120, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(st.lists(st.tuples(st.sampled_from(list(paths(FULL))), st.just(...) | odd), min_size=1, max_size=3))
 def test_a_mutated_manifest_is_refused_or_read(tmp_path_factory, changes):
@@ -817,6 +818,7 @@ cuts = st.lists(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(cuts, st.just(".csv") | st.sampled_from(list(BASES)))
 def test_a_mutated_file_is_refused_or_read(tmp_path_factory, cuts, ending):

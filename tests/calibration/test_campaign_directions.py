@@ -85,6 +85,7 @@ def of_short_crested(folder, **records):
     return write(folder, text=PLATFORM, sea=plain(), tests=tests, **records)
 
 
+@pytest.mark.slow
 def test_a_short_crested_campaign_is_compared_and_not_fitted(tmp_path) -> None:
     """Simulated by direct summation, with a note; a fit and second order are refused."""
     with pytest.raises(InputError, match=r"tests\[1\]\.sea: expected records: \{order: 1\} with waves of several headings"):

@@ -68,6 +68,7 @@ def test_command_says_that_periods_are_off(tmp_path):
     assert "surge: the model's natural period is" in " ".join(result.output.split())
 
 
+@pytest.mark.slow
 def test_a_platform_out_of_balance_or_not_one_s_own_is_named(tmp_path):
     folder = small_campaign(tmp_path / "new")
     text = (folder / "platform.yaml").read_text()

@@ -231,6 +231,7 @@ def platform() -> jh.Model:
     return jh.load_model("volturnus-s")
 
 
+@pytest.mark.slow
 def test_heave_damping_of_volturnus_by_hand() -> None:
     """Heave: 1/2 rho Cd A of three pontoons in plan and of four column bottoms; B33; mass and added mass by hand."""
     found, half = model_damping(platform(), "heave"), 0.5 * 1025.0

@@ -235,6 +235,7 @@ def test_bands_of_held_out_tests_are_written_and_told(result: Diagnosis, written
     assert "Samples inside" in Page(write_report(written).read_text()).text
 
 
+@pytest.mark.slow
 def test_a_size_at_the_end_of_what_is_plausible_is_told(result: Diagnosis, tmp_path: Path) -> None:
     """With the range and where it comes from; the effect is in doubt, and its probability is beside it."""
     one = replace(

@@ -119,6 +119,7 @@ def test_a_series_without_rows_keeps_its_place():
     assert set(rows.series) == {0}
 
 
+@pytest.mark.slow
 def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
     """What is declared is fitted, not looked for."""
     campaign = campaign_of(tmp_path, lambda x, v: 0.0)

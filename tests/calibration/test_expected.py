@@ -35,6 +35,7 @@ AFLOAT = {
 }
 
 
+@pytest.mark.slow
 def test_the_impedance_of_springs() -> None:
     """Of a body in springs, per unit of mass: K/m - omega^2 + i omega B/m, and nothing of one motion in the other."""
     model = jh.build(jh.Platform.model_validate(AFLOAT))

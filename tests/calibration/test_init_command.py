@@ -56,6 +56,7 @@ def test_text_among_numbers_says_what_to_do(tmp_path):
     assert not (tmp_path / "b").exists()
 
 
+@pytest.mark.slow
 def test_still_water_before_a_push_is_zero(tmp_path):
     """A platform that rests off zero for 30 s, and is then pushed: its readings at rest are still water."""
     time = np.arange(0.0, 150.0, 0.1)
@@ -74,6 +75,7 @@ def test_still_water_before_a_push_is_zero(tmp_path):
     assert campaign(tmp_path / "other", record_of_demo).manifest.zero is None
 
 
+@pytest.mark.slow
 def test_a_ship_that_nothing_holds_up_can_be_diagnosed(tmp_path):
     """Its weight is not varied: with more of it there would be no equilibrium."""
     time = np.arange(0.0, 30.0, 0.05)

@@ -244,6 +244,7 @@ def test_terms_that_all_but_cancel_are_no_law():
     assert best_terms(RegressionBlock(other, terms[:, :2], terms[:, :2], 1.0).products(), 2)[0] == ()
 
 
+@pytest.mark.slow
 def test_what_is_written(model, tmp_path):
     """From a calibration's tests, uneven clocks among them, to the document, the page and a figure."""
     made = decays(model(), cubic)

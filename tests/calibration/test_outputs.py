@@ -295,6 +295,7 @@ def test_an_old_result_stays_when_the_last_move_fails(result, tmp_path, monkeypa
     assert contents(tmp_path) == before
 
 
+@pytest.mark.slow
 def test_a_new_result_replaces_the_old_one_and_nothing_else(result: Calibration, written: Path, tmp_path: Path) -> None:
     folder = shutil.copytree(written, tmp_path / "out")
     write_report(folder)

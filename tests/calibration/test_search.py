@@ -87,6 +87,7 @@ def test_the_same_seed_gives_the_same_search_and_leaves_others_chance_alone(camp
     np.testing.assert_array_equal(state(), before)
 
 
+@pytest.mark.slow
 def test_a_budget_of_seconds_ends_a_search(campaign: Campaign) -> None:
     one = search(campaign, starts=STARTS, finalists=STARTS, seed=2, budget=Budget(1.0))
     assert one.ended == "budget" and 1.0 <= one.seconds < 2.0
@@ -140,6 +141,7 @@ def test_j_is_the_contracts_and_free_of_offsets(campaign: Campaign) -> None:
     assert Task(problem, records, moved, Budget()).simulate(at)[0] == pytest.approx(fit.decays.objective(), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_command_calibrates_from_end_to_end(campaign: Campaign, tmp_path: Path) -> None:
     """Between the bounds of the searches: the program is theirs."""
     bounds = {label: list(ends) for label, ends in ranges(jh.build(campaign.platform), LABELS, {}, DEFAULT_FACTOR, "x").items()}

@@ -151,6 +151,7 @@ def test_an_inextensible_line_on_the_seabed() -> None:
     assert_allclose(found[:, 0], [a * weight, weight * hanging], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_force_and_stiffness_are_continuous() -> None:
     """Where a line gets slack, lifts off the seabed, and where friction holds the anchor's tension at zero."""
     parts = segments((850.0, 5800.0, 3e9), friction=0.3)
@@ -188,6 +189,7 @@ PARAMETERS = {
 }
 
 
+@pytest.mark.slow
 def test_gradients_of_the_force() -> None:
     """Forward = reverse = central differences, by every kind of parameter."""
     model = moored(volturnus()).with_values({"mooring.seabed_friction": 0.4})
@@ -223,6 +225,7 @@ def test_gradients_of_a_motion() -> None:
         assert_allclose(reverse[label], forward[label], rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_natural_periods_follow_the_lines() -> None:
     """Their derivative by the length, through a derivative of second order, is that of central differences."""
     model, label = moored(volturnus()), "mooring.line1.unstretched_length"

@@ -45,6 +45,7 @@ def force(model: Model, sea: jh.WaveSea) -> jnp.ndarray:
     return model.force_at_rest(jnp.zeros(6), sea) - model.force_at_rest(jnp.zeros(6))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("diffraction", ["maccamy_fuchs", "ramp", "none"])
 def test_the_first_order_force_is_that_of_the_table(diffraction: str) -> None:
     """On the upright hull in mean wetting, whatever the added-mass coefficients are; drag left out."""
@@ -61,6 +62,7 @@ def test_the_first_order_force_is_that_of_the_table(diffraction: str) -> None:
             assert_allclose(found, expected, atol=2e-3 * np.abs(expected).max() + 1e3)
 
 
+@pytest.mark.slow
 def test_no_share_leaves_the_strips_alone() -> None:
     model, sea = jh.load_model("volturnus-s"), waves(0.6)
     without = corrected(0.0)

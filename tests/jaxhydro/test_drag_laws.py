@@ -132,6 +132,7 @@ def test_labels_and_values_come_back(name: str) -> None:
     assert jax.tree.structure(model.with_values(new)) == jax.tree.structure(model)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DRAG_LAWS)
 def test_gradients_are_finite_at_rest(name: str) -> None:
     """By state, memory and every parameter, on the motionless platform and on one that moves; vmap = loop."""
@@ -315,6 +316,7 @@ BUOY = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "law",
     [

@@ -133,6 +133,7 @@ def test_own_loop_against_diffrax() -> None:
             assert_allclose(one, getattr(two, name)[:41], rtol=1e-10, atol=1e-10 * float(jnp.abs(one).max()))
 
 
+@pytest.mark.slow
 def test_output_at_recorded_times() -> None:
     """Irregular output times do not touch the integration, and the inner step shows with the scheme's error only."""
     times = np.sort(np.concatenate([[0.0, 40.0], np.random.default_rng(0).uniform(0, 40, 61)]))
@@ -353,6 +354,7 @@ def test_acceleration_and_its_derivatives() -> None:
             assert_allclose(one, other, rtol=1e-7, atol=1e-9 * np.abs(other).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("directions", ["body", "earth"])
 def test_slope_of_the_rate_with_attitude(directions: str) -> None:
     """Forward derivatives against central differences, where the moments of the added mass turn as well."""
@@ -403,6 +405,7 @@ def test_equilibrium_of_a_lighter_platform() -> None:
     assert_allclose(jh.equilibrium(model), [0, 0, 1.5, 0, 0, 0], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_equilibrium_is_differentiable() -> None:
     """d heave / d preload = 1/C33, by the implicit function theorem."""
     matrix = {"kind": "stiffness_matrix", "stiffness": {"C11": 5e4, "C33": 1e6}, "preload": [1e5, 0, 0, 0, 0, 0]}

@@ -93,6 +93,7 @@ def test_it_takes_the_place_of_the_strips_own() -> None:
     assert_allclose(still[1], still[0], rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_what_strips_do_in_small_waves_is_their_excitation() -> None:
     """X taken from the strips' own force in small regular waves: in a small irregular sea the table's force is theirs."""
     strips = only(build(COLUMN, PONTOON, wetting="mean"), StripInertia, EndInertia)

@@ -135,6 +135,7 @@ def test_natural_periods_in_closed_form(c: float) -> None:
         assert found.of(dof) == pytest.approx(without.of(dof), rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("axis", "entry"), [("x", "A11"), ("y", "A22"), ("z", "A33")])
 def test_at_the_reference_point_it_is_added_mass(axis: str, entry: str) -> None:
     """Of an upright platform. Added mass turns with the body, a guide does not."""

@@ -317,33 +317,53 @@ def test_the_example_has_every_registered_load() -> None:
     assert known | {DiffractionCorrection} == {MorisonDrag, *EFFECTS.values()}
 
 
-@pytest.mark.parametrize("name", EFFECTS)
-def test_contract(name: str) -> None:
-    """The neutral value is silent in still water, jit = eager, vmap = loop, float64 is kept, parameters within bounds."""
+def with_one_effect(name: str) -> jh.Model:
+    """The example with one effect."""
     model = only(everything(), EFFECTS[name])
     if name == "diffraction_correction":  # a platform has one table of excitation, and the example has it whole
         model = with_diffraction_correction(only(everything(), StripInertia, EndInertia, ComputedExcitation))
         model = only(model, DiffractionCorrection)
+    return model
+
+
+wrenches = eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0, None))
+
+
+@one_program
+def in_waves_and_neutral(model, neutral, positions, velocities, sea):
+    """Wrenches at some positions in waves, and at the first in still water with neutral values."""
+    return wrenches(model, positions, velocities, sea), wrench.__wrapped__(neutral, positions[0], velocities[0])
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_contract(name: str) -> None:
+    """The neutral value is silent in still water, float64 is kept, parameters within bounds."""
+    model = with_one_effect(name)
     (load,) = model.effects
-    positions, velocities = sample(1)
     for label, value in load.values.items():
         about = load.about(label)
         assert about.unit and about.meaning and about.lower <= about.neutral <= about.upper
         assert about.lower <= float(value) <= about.upper
 
-    loop = [wrench(model, q, v, SEA) for q, v in zip(positions, velocities, strict=True)]
-    batch = eqx.filter_jit(eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0, None)))(model, positions, velocities, SEA)
-    eager = wrench.__wrapped__(model, positions[0], velocities[0], SEA)
-    for whole, alone, *parts in zip(batch, eager, *loop, strict=True):
-        whole, alone, *parts = map(np.asarray, (whole, alone, *parts))
-        scale = np.abs(whole).max() + 1e-300
-        assert all(part.dtype == np.float64 and np.isfinite(part).all() for part in (whole, alone, *parts))
-        assert_allclose(whole / scale, np.stack(parts) / scale, atol=1e-13)
-        assert_allclose(alone / scale, parts[0] / scale, atol=1e-13)
+    neutral = model.with_values({label: load.about(label).neutral for label in load.values})
+    batch, silent = in_waves_and_neutral(model, neutral, *sample(1), SEA)
+    assert all(part.dtype == np.float64 and np.isfinite(part).all() for part in map(np.asarray, batch))
+    assert not load.values or all((np.asarray(part) == 0).all() for part in silent)
 
-    if load.values:
-        neutral = model.with_values({label: load.about(label).neutral for label in load.values})
-        assert all((np.asarray(part) == 0).all() for part in wrench(neutral, positions[0], velocities[0]))
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", EFFECTS)
+def test_compiled_or_not_and_one_by_one_or_together(name: str) -> None:
+    """jit = eager, vmap = loop."""
+    model, (positions, velocities) = with_one_effect(name), sample(1)
+    loop = [wrench(model, q, v, SEA) for q, v in zip(positions, velocities, strict=True)]
+    batch = eqx.filter_jit(wrenches)(model, positions, velocities, SEA)
+    eager = wrench.__wrapped__(model, positions[0], velocities[0], SEA)
+    for whole, one, *parts in zip(batch, eager, *loop, strict=True):
+        whole, one, *parts = map(np.asarray, (whole, one, *parts))
+        scale = np.abs(whole).max() + 1e-300
+        assert_allclose(whole / scale, np.stack(parts) / scale, atol=1e-13)
+        assert_allclose(one / scale, parts[0] / scale, atol=1e-13)
 
 
 @pytest.mark.parametrize("name", WATER_EFFECTS)
@@ -368,6 +388,7 @@ def test_a_sensor_effect_at_its_neutral_value(name: str) -> None:
     assert bool((other.seen(position) != position).any()) or float(other.clock_lag()) == 0.2
 
 
+@pytest.mark.slow
 def test_waves_at_the_reference_position() -> None:
     """They then do not tell where the platform has gone; where it leans they are those of its points upright, as the separate
     NumPy model has them."""

@@ -52,6 +52,7 @@ def test_statistics_of_a_sea_hardly_change():
         assert 0 < np.abs(mixed[:, i] - double[:, i]).max() < 1e-4 * deviation
 
 
+@pytest.mark.slow
 def test_a_sea_of_several_headings_has_the_precision_too():
     model = jh.load_model("volturnus-s-focal")
     waves = jh.spectrum_components(

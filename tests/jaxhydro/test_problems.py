@@ -143,6 +143,7 @@ DOCUMENTS["parts"] = {
 GOOD = FILES["volturnus-s-focal"].read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 @settings(max_examples=400, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.sampled_from(sorted(DOCUMENTS)), st.lists(CHANGE, min_size=1, max_size=3))
 def test_no_change_of_a_good_file_does_anything_but_load_or_tell(name: str, changes: list[Any]) -> None:
@@ -161,6 +162,7 @@ def test_no_change_of_a_good_file_does_anything_but_load_or_tell(name: str, chan
         assert all(np.isfinite(member.profile()[1]).all() for member in platform.members)
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.integers(0, len(GOOD)), st.integers(0, 30), st.text("{}[]:,-&*!|>%@`\"'#?\n\t \x00.0aé~<", max_size=5))
 def test_no_text_does_anything_but_load_or_tell(tmp_path_factory: Any, start: int, cut: int, text: str) -> None:

@@ -194,6 +194,7 @@ def test_retardation_of_the_memory_of_second_order() -> None:
     assert np.abs(found).sum() == pytest.approx(abs(expected))
 
 
+@pytest.mark.slow
 def test_steps_follow_the_fastest_memory() -> None:
     """Adams-Bashforth is stable at the default step in a sea and no more at four times it; halving the step changes little."""
     model = platform()
@@ -396,6 +397,7 @@ def test_a_platform_file_names_its_coefficients(tmp_path: Path) -> None:
     assert_allclose(first.transfer(omega)[:, 2, 2], transfer(omega) * SHAPE[2, 2], atol=0.03 * SHAPE[2, 2])
 
 
+@pytest.mark.slow
 def test_added_mass_of_the_file_takes_the_place_of_the_members_own(tmp_path: Path) -> None:
     """All, half or none of it; that of members goes with it. A file without it is refused where it is asked for."""
 

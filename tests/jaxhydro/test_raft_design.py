@@ -318,6 +318,7 @@ def test_mooring_of_another_file_is_left_out(tmp_path: Path) -> None:
 # -------------------------------------------------------------------------------------------- whole design
 
 
+@pytest.mark.slow
 def test_the_platform_file_loads_builds_and_floats_as_the_design_says(tmp_path: Path) -> None:
     found = converted(tmp_path)
     path = tmp_path / "platform.yaml"

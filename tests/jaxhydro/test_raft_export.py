@@ -93,6 +93,7 @@ def test_mass_members_and_coefficients_come_back(name: str, tmp_path: Path) -> N
         assert read[key] == pytest.approx(mine[key], rel=SAME), key
 
 
+@pytest.mark.slow
 def test_catenaries_come_back(tmp_path: Path) -> None:
     before, after = declared("catenary"), read_back("catenary", tmp_path)
     mine, read, water = before.mooring, after.mooring, before.water

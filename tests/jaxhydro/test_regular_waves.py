@@ -134,6 +134,7 @@ def test_the_flow_of_a_steep_wave_obeys_its_surface_condition(coefficients) -> N
         assert w == pytest.approx(float(rise) + u * float(slope), abs=1e-2)  # of 3.9 m/s
 
 
+@pytest.mark.slow
 def test_a_platform_is_moved_by_steep_waves(coefficients) -> None:
     """Finite motion, larger crests than troughs in the recorded wave."""
     one = RASCHII[2]

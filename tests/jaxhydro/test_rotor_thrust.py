@@ -35,6 +35,7 @@ def test_damping_is_that_of_a_matrix() -> None:
     assert_allclose(force(rotor, VELOCITY) - force(rotor), force(matrix, VELOCITY) - force(matrix), rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_thrust_moves_the_platform_as_its_force_and_moment() -> None:
     """With a small thrust the platform stays upright, and a force fixed to the earth does the same."""
     small = jnp.asarray(1e3)

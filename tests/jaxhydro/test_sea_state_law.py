@@ -31,6 +31,7 @@ def models() -> tuple[jh.Model, jh.Model]:
     return build(**EVERYTHING), build(**EVERYTHING, sea_state_laws=LAWS)
 
 
+@pytest.mark.slow
 def test_a_power_of_height_and_period(models) -> None:
     """In its reference sea, and in still water, the model is the plain one; elsewhere its coefficients are the power law's."""
     plain, laws = models

@@ -246,6 +246,7 @@ def test_frequencies_are_not_negative() -> None:
         assert float(potential(one, SHALLOW, x, t)) == pytest.approx(float(potential(two, SHALLOW, x, t)), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_wave_of_no_frequency_binds_nothing() -> None:
     """Exact zeros, and derivatives that are numbers."""
     sea = components([1.0, 2.0, 0.0, 1.5], 0.3 * np.arange(4), SHALLOW, first=0)

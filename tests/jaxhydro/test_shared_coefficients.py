@@ -59,6 +59,7 @@ def same(one: jh.Model, other: jh.Model, sea: Any = SEA) -> None:
             assert_allclose(found, expected, rtol=1e-14, atol=1e-14 * float(jnp.abs(expected).max()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("directions", ["body", "earth"])
 def test_as_the_same_numbers_twice(directions: str) -> None:
     """The parameter is there once, under the label of the group that has the number; forces and added mass are the same."""
@@ -72,6 +73,7 @@ def test_as_the_same_numbers_twice(directions: str) -> None:
     same(twice.with_values(other | copied), once.with_values(other))
 
 
+@pytest.mark.slow
 def test_gradients_add() -> None:
     twice, once = platforms()
     (position, *_), (velocity, *_) = sample(6)
@@ -173,6 +175,7 @@ def test_the_catalogue_asks_for_what_is_there() -> None:
     assert isinstance(with_effects(once, found.labels).loads[-1], WaveExcitation)
 
 
+@pytest.mark.slow
 def test_damping_of_the_members() -> None:
     """Per coefficient, a shared one's is the sum."""
     twice, once = (model_damping(model, "surge", jnp.zeros(6)).per_coefficient for model in platforms())

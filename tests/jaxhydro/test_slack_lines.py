@@ -93,6 +93,7 @@ def test_python_is_warned_where_a_file_is_loaded(tmp_path) -> None:
         load_model(file)
 
 
+@pytest.mark.slow
 def test_a_campaign_finds_it(tmp_path) -> None:
     """With the other warnings on its platform file."""
     (tmp_path / "platform.yaml").write_text(yaml.safe_dump(platform(115.0, 105.0, 105.0)), encoding="utf-8")

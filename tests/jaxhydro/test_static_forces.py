@@ -24,6 +24,7 @@ def statics(*words: str) -> tuple[int, str]:
     return result.exit_code, " ".join(result.output.split())
 
 
+@pytest.mark.slow
 def test_loads_are_in_balance_at_rest() -> None:
     model = volturnus()
     forces = forces_by_load(model, equilibrium(model))

@@ -131,6 +131,7 @@ def test_the_warning_of_a_sea_leads(tmp_path: Path) -> None:
         assert not list(out.glob("figures/*"))
 
 
+@pytest.mark.slow
 def test_a_sweep_tells_its_worst_sea_state(tmp_path: Path) -> None:
     excitation(tmp_path, 0.5, 1.2)
     platform(tmp_path, "excitation: {file: hull.3}")
@@ -171,6 +172,7 @@ def test_a_campaign_tells_waves_outside(tmp_path: Path) -> None:
     load_campaign(tmp_path)
 
 
+@pytest.mark.slow
 def test_remarks_on_files_are_a_campaigns_warnings(tmp_path: Path) -> None:
     (tmp_path / "hull.nc").write_bytes(CYLINDER.read_bytes())
     platform(tmp_path, "excitation: {file: hull.nc, use: candidate}")

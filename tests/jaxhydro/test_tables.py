@@ -185,6 +185,7 @@ def restoring(model: jh.Model) -> np.ndarray:
     return np.diag(stiffness)[2:5] - [0.0, 1e5, 1e5]
 
 
+@pytest.mark.slow
 def test_a_platform_of_one_dataset_moves_as_potential_theory_has_it(tmp_path: Path) -> None:
     """Heave by time simulation: |X3 / (C33 - omega^2 (M + A33) + i omega B33)|, all of the dataset."""
     lines = [f"{key}: {{file: CYLINDER}}" for key in ("hydrostatics", "radiation", "excitation")]
@@ -370,6 +371,7 @@ def test_a_column_by_frequency_of_deeper_water() -> None:
     assert said.endswith("See `excitation.by`: rad/s")
 
 
+@pytest.mark.slow
 def test_a_wrong_column_leads_the_output(tmp_path: Path) -> None:
     """The warning comes before everything else; with the key there is none, and heave is right."""
     wamit_files(tmp_path, "rad/s")

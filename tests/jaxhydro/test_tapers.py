@@ -70,6 +70,7 @@ def disc(diameter: float) -> float:
     return math.pi / 4 * diameter**2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elements", [None, 5])
 @pytest.mark.parametrize("period", [10.0, 20.0])
 def test_heave_force_on_a_cone_and_on_a_step(period: float, elements: int | None) -> None:

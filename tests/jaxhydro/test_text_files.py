@@ -292,6 +292,7 @@ def test_a_workbook_without_its_library_says_what_to_install(tmp_path, monkeypat
         read_table(tmp_path / "a.xlsx")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CASES.is_dir(), reason=f"{CASES} is not on this machine")
 def test_the_case_of_spaces_and_tabs_loads_as_it_does_with_tabs():
     assert load_campaign(CASES / "header-spaces-data-tabs").findings == ()

@@ -330,6 +330,7 @@ def test_what_the_gauge_saw_come_back() -> None:
     assert_allclose(found, sent - 0.5 * returned, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_slopes_of_a_prepared_sea_that_comes_back() -> None:
     """By the share, the delay, what the gauge saw and where it stood: those of the direct sum, and differences, on and above
     the surface."""
@@ -379,6 +380,7 @@ def test_pressure_on_a_column_in_deep_water() -> None:
     assert_allclose(found[:, 2] / upwards, crest / amplitude, atol=5e-3)
 
 
+@pytest.mark.slow
 def test_every_parameter_has_a_slope_at_its_null() -> None:
     """In two waves, moving: of force, flow or reading. The shapes of the low-pass and of what comes back alone have none."""
     first, second = (jh.regular_wave(2.0, period, WATER, phase=0.3).waves for period in (9.0, 11.0))

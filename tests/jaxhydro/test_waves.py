@@ -333,6 +333,7 @@ def test_mirrored_and_turned_waves() -> None:
     assert_allclose(force(0.5 + turn) / scale, matrix @ force(0.5) / scale, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_very_long_wave_lifts_the_platform_with_it() -> None:
     """Heave over wave amplitude tends to 1/(1 - (T_heave/T)^2), near 1: a cork. T = 200 s, waves of 10 cm."""
     model = volturnus()

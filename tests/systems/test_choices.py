@@ -113,6 +113,7 @@ def test_seas_refuse_what_they_do_not_know(model, waves):
         Options(diffraction="rampe")
 
 
+@pytest.mark.slow
 def test_waves_refuse_what_they_do_not_know(model, waves):
     """In every function, not only where a sea is made."""
     environment, sea = model.environment, jh.IrregularSea(waves, model.environment)

@@ -263,6 +263,7 @@ def test_calibrate_prints_and_writes(fitted, tmp_path: Path) -> None:
     assert {path.name for path in (tmp_path / "p").iterdir()} == {"calibration.json", "simulated.nc"}
 
 
+@pytest.mark.slow
 def test_the_demo_compares_with_the_truth_and_makes_the_page(fitted, tmp_path: Path) -> None:
     text = run("demo", "--out", tmp_path / "o")
     assert "Against the true coefficients" in text and "-1.3 %" in text and "-1.4 sd" in text

@@ -39,6 +39,7 @@ def test_a_file_without_directions_is_told(tmp_path: Path) -> None:
     assert "expected a column dir, beside freq and efth, found freq, efth" in said, said
 
 
+@pytest.mark.slow
 def test_two_systems_move_a_platform(tmp_path: Path) -> None:
     """Sway too; what was asked for is in the file."""
     systems = ("--sea", "hs=2 tp=14 heading=30", "--sea", "hs=1.5 tp=7 heading=-40 spreading=8")

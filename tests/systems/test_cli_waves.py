@@ -102,6 +102,7 @@ def test_statistics_are_those_of_the_series(written) -> None:
     assert set(found["bands"]["wave"]) == {"wave_frequency"} and "yaw" not in found["bands"]
 
 
+@pytest.mark.slow
 def test_a_record_gives_back_its_sea(written, tmp_path) -> None:
     """The wave of one run, as a record of 300 s, moves the platform as that run's sea did: first orders are told apart."""
     first = pd.read_csv(written[0] / "motion.csv")

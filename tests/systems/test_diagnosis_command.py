@@ -191,6 +191,7 @@ def test_simulations_have_the_effects_that_were_found(written: Path, tmp_path: P
     assert float(found.values["mass_properties.mass"]) == 1e5 and FORCE in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_simulations_have_the_strips_and_seas_that_were_taken(
     result: Diagnosis, one_decay, tmp_path, capsys, monkeypatch
 ) -> None:

@@ -66,6 +66,7 @@ def process(code: str, folder: Path, **variables: str) -> dict[str, Any]:
     return json.loads(done.stdout.splitlines()[-1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("package", ["jaxhydro", "calibration"])
 def test_the_import_is_enough(package: str, tmp_path: Path) -> None:
     """Nothing is computed by it, so that the user can still choose devices and flags."""
@@ -74,6 +75,7 @@ def test_the_import_is_enough(package: str, tmp_path: Path) -> None:
     assert QUICK in found["flags"] and not found["begun"]
 
 
+@pytest.mark.slow
 def test_the_next_process_finds_the_programs_compiled(tmp_path: Path) -> None:
     """Also where JAX computed before the import."""
     code = """

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy import signal
+import scipy  # its parts are imported when they are used: that takes a second
 
 from calibration.campaign.signals import wave_height
 from calibration.discovery.latent_force.force_law import LAG_RATIOS, LAGGED_TERMS, columns_of, squared_envelope
@@ -61,7 +61,7 @@ def bands_in(recovered: RecoveredForce) -> dict[str, tuple[float, float]]:
 def in_bands(recovered: RecoveredForce) -> dict[str, float]:
     """Mean square of a force (N², (N m)²) in its mean and in bands."""
     force = recovered.force[recovered.inside]
-    frequency, power = signal.periodogram(force, 1 / recovered.test.step, "hann", detrend="constant")
+    frequency, power = scipy.signal.periodogram(force, 1 / recovered.test.step, "hann", detrend="constant")
     power = power * float(np.var(force)) / max(float(power.sum()), 1e-300)
     bands = bands_in(recovered)
     within = {name: float(power[(frequency >= a) & (frequency < b)].sum()) for name, (a, b) in bands.items()}
@@ -103,8 +103,8 @@ def force_coherence(
             continue
         rows = (values(recovered)[recovered.inside], recovered.force[recovered.inside])
         options = {"fs": 1 / recovered.test.step, "window": "hann", "nperseg": size, "detrend": "constant"}
-        frequency, both = signal.csd(*rows, **options)
-        u, f = (signal.welch(row, **options)[1] for row in rows)
+        frequency, both = scipy.signal.csd(*rows, **options)
+        u, f = (scipy.signal.welch(row, **options)[1] for row in rows)
         low, high = limits(recovered)
         asked = (frequency >= low) & (frequency < high)
         inside = asked & (u > 1e-9 * u.max())

@@ -20,7 +20,7 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import hilbert
+import scipy  # its parts are imported when they are used: that takes a second
 
 from calibration.discovery.latent_force.recovered_force import RecoveredForce
 from calibration.discovery.reported_forces import Law, LawTerm
@@ -96,7 +96,7 @@ def squared_envelope(wave: np.ndarray, step: float) -> np.ndarray:
 
 def quarter_period_later(values: np.ndarray) -> np.ndarray:
     """A series with every frequency shifted by a quarter of its period (Hilbert transform)."""
-    return np.imag(hilbert(values - values.mean()))
+    return np.imag(scipy.signal.hilbert(values - values.mean()))
 
 
 def lagged(velocity: np.ndarray, step: float, constant: float) -> np.ndarray:

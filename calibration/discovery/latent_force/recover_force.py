@@ -22,13 +22,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+import scipy  # its parts are imported when they are used: that takes a second
 from jaxtyping import Array, Float
-from scipy.interpolate import CubicSpline
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from calibration.discovery.gather import highest_frequency
 from calibration.discovery.latent_force.describe_force import described
@@ -39,6 +37,7 @@ from calibration.result import Calibration
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
+from jaxhydro.exported_programs import exported_jit
 from jaxhydro.waves.sea import AbstractSea, StillWater
 
 if TYPE_CHECKING:
@@ -87,12 +86,12 @@ def filter_gain(force: np.ndarray, taper: np.ndarray, noise: np.ndarray) -> tupl
         taper: Its taper (n,).
         noise: Variance of its noise by Fourier line.
     """
-    level = maximum_filter1d(noise, LINES_AVERAGED, mode="nearest") * float((taper**2).sum())
-    ratio = uniform_filter1d(np.abs(np.fft.rfft(force * taper)) ** 2 / level, LINES_AVERAGED, mode="nearest")
+    level = scipy.ndimage.maximum_filter1d(noise, LINES_AVERAGED, mode="nearest") * float((taper**2).sum())
+    ratio = scipy.ndimage.uniform_filter1d(np.abs(np.fft.rfft(force * taper)) ** 2 / level, LINES_AVERAGED, mode="nearest")
     return np.clip(1 - NOISE_FACTOR / np.maximum(ratio, 1e-300), 0.0, None), float(ratio.max())
 
 
-@eqx.filter_jit
+@exported_jit
 def _accelerations(
     model: Model, sea: AbstractSea, time: Float[Array, " t"], position: Float[Array, "t 6"], rate: Float[Array, "t 6"]
 ) -> Float[Array, "t 6"]:
@@ -142,7 +141,7 @@ def forces_of(model: Model, test: ResampledTest, base: np.ndarray, highest: floa
         lines = fades[name] * np.fft.rfft(residual * cut[name][0])
         more[:, j], faster[:, j], pushed[:, j] = (np.fft.irfft(lines * (1j * omega) ** k, n) for k in range(3))
         position[:, j] = base[j] + test.simulated[name]
-        rate[:, j] = CubicSpline(test.time, test.simulated[name])(test.time, 1)
+        rate[:, j] = scipy.interpolate.CubicSpline(test.time, test.simulated[name])(test.time, 1)
     along_recorded, along_simulated = (
         accelerations(model, test.sea, test.time, position + k * more, rate + k * faster) for k in (1, 0)
     )
@@ -219,7 +218,7 @@ def resampled_tests(search: Search, fitted: Calibration) -> Iterator[ResampledTe
             water, time = sea.sea, begin + tick * ticks
             wave = None if record.wave is None else np.interp(time, record.time, record.wave)
         both = [
-            {series.channel: CubicSpline(test.time, values)(time) for series, values in rows}
+            {series.channel: scipy.interpolate.CubicSpline(test.time, values)(time) for series, values in rows}
             for rows in ([(s, s.measured) for s in test.series], [(s, s.simulated) for s in test.series])
         ]
         noise = {series.channel: series.noise for series in test.series}

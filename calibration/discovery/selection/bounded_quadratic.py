@@ -1,7 +1,7 @@
 """Minimum of a quadratic form within bounds."""
 
 import numpy as np
-from scipy.optimize import lsq_linear
+import scipy  # its parts are imported when they are used: that takes a second
 
 RIDGE = 1e-12  # of the diagonal: dependent columns stay solvable
 MAX_BOUND_EXCHANGES = 12  # where the bounds that hold do not settle, they are exchanged one by one
@@ -23,7 +23,7 @@ def bounded_minimum(matrix: np.ndarray, slope: np.ndarray, low: np.ndarray, high
     roots = np.sqrt(np.maximum(size, RIDGE * size[-1]))  # rounding makes eigenvalues of dependent columns negative
     root = roots[:, None] * directions.T
     target = -(directions.T @ (scale * slope)) / roots
-    solution = lsq_linear(root, target, (low / scale, high / scale), method="bvls", tol=1e-12)
+    solution = scipy.optimize.lsq_linear(root, target, (low / scale, high / scale), method="bvls", tol=1e-12)
     inside = np.clip(scale * solution.x, low, high)
     return np.where(solution.active_mask > 0, high, np.where(solution.active_mask < 0, low, inside))
 
