@@ -87,7 +87,8 @@ def _program(fun: Callable[..., Any], arguments: Any, folder: Path, options: Map
             _write(path, *found)
     except _NotKeptError:
         return None
-    result, exported = found
+    result, content = found
+    exported = jax.export.deserialize(bytearray(content))  # of a new program, too: its results' types are slightly others
 
     def run(*arrays: jax.Array) -> list[jax.Array]:
         return exported.call(*arrays)  # type: ignore[no-any-return]
@@ -101,7 +102,7 @@ class _NotKeptError(Exception):
     """A result is of a class from elsewhere."""
 
 
-def _export(fun: Callable[..., Any], arguments: Any) -> tuple[Any, jax.export.Exported]:
+def _export(fun: Callable[..., Any], arguments: Any) -> tuple[Any, bytes]:
     """A function traced and lowered for some arguments: description of its result, and the program of arrays."""
     leaves, structure = jax.tree.flatten(arguments)
     described: list[Any] = []
@@ -115,7 +116,7 @@ def _export(fun: Callable[..., Any], arguments: Any) -> tuple[Any, jax.export.Ex
 
     of_arrays.__name__ = getattr(fun, "__name__", "program")
     program = jax.export.export(jax.jit(of_arrays))(*(leaf for leaf in leaves if eqx.is_array(leaf)))
-    return described[-1], program
+    return described[-1], bytes(program.serialize())
 
 
 def _described(value: Any, arrays: list[jax.Array]) -> Any:
@@ -168,7 +169,7 @@ def _class(name: str) -> type:
     return found  # type: ignore[no-any-return]
 
 
-def _read(path: Path) -> tuple[Any, jax.export.Exported] | None:
+def _read(path: Path) -> tuple[Any, bytes] | None:
     """What is kept in a file; None where there is none, or none that can be read."""
     try:
         checksum, described, program = path.read_bytes().split(b"\n", 2)
@@ -176,16 +177,16 @@ def _read(path: Path) -> tuple[Any, jax.export.Exported] | None:
         return None
     if checksum != _checksum(described + program):
         return None
-    return json.loads(described), jax.export.deserialize(bytearray(program))
+    return json.loads(described), program
 
 
-def _write(path: Path, described: Any, program: jax.export.Exported) -> None:
+def _write(path: Path, described: Any, program: bytes) -> None:
     """Keep a program, unless the folder cannot be written."""
-    text, content = json.dumps(described).encode(), program.serialize()
+    text = json.dumps(described).encode()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-            file.write(b"\n".join([_checksum(text + content), text, content]))
+            file.write(b"\n".join([_checksum(text + program), text, program]))
         os.replace(file.name, path)
     except OSError:
         return

@@ -37,7 +37,7 @@ class JitOnce(Generic[P, R]):
 
     def __init__(self, fun: Callable[P, R]) -> None:
         update_wrapper(self, fun)
-        self._jitted: Callable[P, R] = eqx.filter_jit(fun)
+        self._jitted: Callable[P, R] = exported_jit(fun)
         self._lock, self._compiled = threading.Lock(), set[Hashable]()
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -65,7 +65,7 @@ class JitOnce(Generic[P, R]):
 
 
 def jit_once(fun: Callable[P, R]) -> JitOnce[P, R]:
-    """`equinox.filter_jit` that compiles once when several threads ask for the same program.
+    """`exported_jit` that compiles once when several threads ask for the same program.
 
     JAX compiles it in every thread that calls before the first compilation has ended.
 

@@ -35,7 +35,8 @@ class Elsewhere(NamedTuple):
 def results(state, factor, name="plain"):
     traced.append(name)
     moved = eqx.tree_at(lambda s: s.position, state, factor * state.position)
-    return {"moved": moved, "list": [None, True, 2, 0.5, name]}, (moved.position.sum(), jh.StillWater())
+    plain = {"moved": moved, "weak": jnp.where(factor > 0, 1.0, 2.0), "list": [None, True, 2, 0.5, name]}
+    return plain, (moved.position.sum(), jh.StillWater())
 
 
 def elsewhere(value):
@@ -57,6 +58,8 @@ def test_the_next_process_does_not_trace(folder):
     again = exported_jit(results)(STATE, jnp.array(3.0))  # another function of the same name is what another process has
     assert traced == ["plain"]
     assert jax.tree.structure(first) == jax.tree.structure(again)
+    for one, other in zip(jax.tree.leaves(first), jax.tree.leaves(again), strict=True):
+        assert jax.typeof(one) == jax.typeof(other) if eqx.is_array(one) else one == other
     assert type(again[0]["moved"]) is jh.State and again[0]["list"] == [None, True, 2, 0.5, "plain"]
     assert_allclose(again[0]["moved"].position, 3 * np.arange(6.0), rtol=1e-15)
     assert float(again[1][0]) == 45.0 and float(again[0]["moved"].memory["memory"]) == 3.0
