@@ -23,7 +23,10 @@ TOCTREES = {  # of the page before the colon; they are appended to it, so that n
         *("quickstart", "tutorials/index", "guide/index", "reference/index"),
         *("Validation <verified>", "FAQ <faq>", "project"),
     ),
-    "guide/index": ("calibrate", "waves", "diagnose", "diagnose-results", "sweeps", "uncertainty", "python", "convert", "own-effect", "../formats"),
+    "guide/index": (
+        *("calibrate", "waves", "diagnose", "diagnose-results", "sweeps"),
+        *("uncertainty", "python", "convert", "own-effect", "../formats"),
+    ),
     "reference/index": ("../theory", "../conventions", "../constants", "commands", "python/index", "../glossary"),
     "verified": ("validation", "speed", "discovery-benchmark"),
     "project": ("contributing", "architecture", "comparison", "changelog"),
