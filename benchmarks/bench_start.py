@@ -105,7 +105,7 @@ def main() -> None:
         "",
         f"`python -m benchmarks.bench_start --rounds {asked.rounds}`, {when}. Seconds are medians of the rounds.",
         "CPU time is that of the whole process, imports included. *Full* is the compilation cache that the first run left.",
-        "Programs that come from the cache are counted: they are traced and lowered all the same.",
+        "Programs that come from the cache are counted.",
         "",
         f"Machine: {processor()}, {os.cpu_count()} cores, load average {os.getloadavg()[0]:.1f}; jaxhydro {revision()}.",
         "",

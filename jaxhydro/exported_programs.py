@@ -34,8 +34,12 @@ switched_on = True  # tests that replace functions switch it off: the program of
 def exported_jit(fun: Callable[P, R], compiler_options: Mapping[str, Any] | None = None) -> Callable[P, R]:
     """`equinox.filter_jit` whose programs later processes load.
 
-    It is `equinox.filter_jit` alone within another program that is traced, on other devices than CPUs, and without JAX's
-    compilation cache. The result may be of numbers, arrays, containers, and the packages' own modules and named tuples.
+    It is `equinox.filter_jit` and nothing more in these cases:
+
+    - within another program that is traced
+    - on other devices than CPUs, and without JAX's compilation cache
+    - with an argument of a user's own class: that may have changed since its file was read
+    - for programs that JAX cannot export, and results of classes from elsewhere
 
     Args:
         fun: The function, of a module.
@@ -85,8 +89,8 @@ def _program(fun: Callable[..., Any], arguments: Any, folder: Path, options: Map
         if (found := _read(path)) is None:
             found = _export(fun, arguments)
             _write(path, *found)
-    except _NotKeptError:
-        return None
+    except (_NotKeptError, NotImplementedError, ValueError):
+        return None  # JAX cannot export callbacks and some libraries' calls; an error of the function itself comes again
     result, content = found
     exported = jax.export.deserialize(bytearray(content))  # of a new program, too: its results' types are slightly others
 
@@ -128,10 +132,10 @@ def _described(value: Any, arrays: list[jax.Array]) -> Any:
         return ARRAY
     if type(value) in (tuple, list):
         return {type(value).__name__: [_described(item, arrays) for item in value]}
-    if type(value) is dict:
+    if type(value) is dict and all(isinstance(name, str) for name in value):
         return {"dict": [[name, _described(value[name], arrays)] for name in value]}
     kind = type(value)
-    if kind.__module__.split(".")[0] in OWNERS:
+    if kind.__module__.split(".")[0] in OWNERS and "<" not in kind.__qualname__:
         name = f"{kind.__module__}:{kind.__qualname__}"
         if isinstance(value, tuple):
             return {"named tuple": name, "items": [_described(item, arrays) for item in value]}

@@ -117,7 +117,7 @@ def statics(
     ] = None,
     calibration: arguments.Calibrated = None,
 ) -> None:
-    """Print rest position, natural periods, forces by load, tensions of mooring lines and stiffness.
+    """Print rest position, natural periods, forces by load, stiffness, and tensions of mooring lines where there are any.
 
     Nothing is written.
     """

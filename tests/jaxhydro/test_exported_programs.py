@@ -138,6 +138,28 @@ def test_a_program_with_a_class_of_the_users_is_not_kept(folder, monkeypatch):
     assert len(list(folder.iterdir())) == 1
 
 
+def with_a_callback(x):
+    return 2 * jax.pure_callback(np.sin, jax.ShapeDtypeStruct((), float), x)
+
+
+def refused(x):
+    if x.ndim == 0:
+        raise ValueError("expected an array of one axis")
+    return x
+
+
+def test_what_jax_cannot_export_runs_all_the_same(folder):
+    assert float(exported_jit(with_a_callback)(jnp.array(0.5))) == 2 * np.sin(0.5)
+    assert not list(folder.iterdir())
+
+
+def test_errors_are_the_functions_own(folder):
+    for _ in range(2):
+        with pytest.raises(ValueError, match="of one axis"):
+            exported_jit(refused)(jnp.array(0.5))
+    assert not list(folder.iterdir())
+
+
 def test_it_is_off_without_the_compilation_cache(folder, monkeypatch):
     monkeypatch.setattr(exported_programs, "_folder", lambda: None)
     assert [float(exported_jit(square)(jnp.ones(2))) for _ in range(2)] == [2.0, 2.0]
