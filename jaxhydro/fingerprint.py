@@ -169,7 +169,7 @@ def _named(definition: Any, source_files: dict[str, None]) -> bytes:
     if root not in PACKAGES and root not in sys.stdlib_module_names:
         try:
             file = inspect.getsourcefile(definition)
-        except TypeError:
+        except (TypeError, OSError):  # OSError: of a notebook or a console
             file = None
         if file and "site-packages" not in Path(file).parts and Path(file).is_file():
             source_files[file] = None

@@ -56,7 +56,7 @@ def moved(name: str) -> dict[str, float]:
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow if name == "volturnus-s" else ()) for name in CASES]
+    "name", [pytest.param(name, marks=() if name in ("oc3-hywind", "ship-section") else pytest.mark.slow) for name in CASES]
 )
 def test_natural_periods(name: str) -> None:
     found = own_periods(name)
@@ -70,7 +70,9 @@ def test_natural_periods(name: str) -> None:
         assert found[dof] == pytest.approx(POTENTIAL[name]["periods"][dof], rel=within)
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name == "iti-barge" else pytest.mark.slow) for name in CASES])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name == "ship-section" else pytest.mark.slow) for name in CASES]
+)
 def test_a_small_regular_wave(name: str) -> None:
     """A strip afloat takes the waves as linear across its section, which shows in the ship section's roll."""
     case = CASES[name]

@@ -460,7 +460,7 @@ def test_one_column_for_one_test_and_none_for_another(tmp_path):
 
 
 def test_a_numeric_id_is_a_name_and_each_file_is_read_once(tmp_path, monkeypatch):
-    from calibration.campaign import series as module
+    from jaxhydro.interop import data_files as module
 
     document = manifest()
     document["tests"] = [

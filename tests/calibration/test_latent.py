@@ -93,6 +93,7 @@ def decays(model, torque, seed=0, releases=RELEASES) -> list[tuple[ResampledTest
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("torque", "least"),  # `least`: correlation with the torque, of which noise hides what dry friction does fast
     [(cubic, 0.93), (friction, 0.88), (repeating, 0.99)],

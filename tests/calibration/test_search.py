@@ -103,6 +103,7 @@ def test_multi_start_settles_where_the_truth_is(campaign: Campaign) -> None:
     assert jh.natural_modes(model).of("roll") == pytest.approx(jh.natural_modes(model_of(SHIP, SHIP_TRUE)).of("roll"), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_ctrl_c_gives_what_was_reached(campaign: Campaign) -> None:
     said: list[Progress] = []
 

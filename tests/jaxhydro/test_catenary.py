@@ -166,6 +166,7 @@ def test_force_and_stiffness_are_continuous() -> None:
     assert_allclose(area, tension[1:] - tension[0], rtol=2e-3, atol=2e3)
 
 
+@pytest.mark.slow
 def test_volturnus_s_as_published() -> None:
     """Pretension 2437 kN (NREL/TP-5000-76773), the pull that balances the platform, stiffness of the WAMIT data to 0.5 %."""
     model = volturnus()

@@ -69,6 +69,7 @@ def test_no_share_leaves_the_strips_alone() -> None:
     assert_allclose(force(without, without.through(sea)), force(model, sea), rtol=1e-12, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_second_order_forces_stay() -> None:
     """What the surface does to the wet length is that of the strips: the correction is linear in the waves."""
     model, plain = corrected(), jh.load_model("volturnus-s")

@@ -445,6 +445,7 @@ def test_dissipative_loads_take_energy_out(kind: type) -> None:
     assert (forces * np.asarray(velocities)).sum(axis=1).max() < 0.0
 
 
+@pytest.mark.slow
 def test_all_loads_together_are_their_sum() -> None:
     """(M + sum A_k) dv/dt = sum F_k."""
     positions, velocities = sample(3)

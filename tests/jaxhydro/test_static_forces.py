@@ -90,6 +90,7 @@ def test_waves_that_nothing_takes_are_told(tmp_path: Path) -> None:
     assert wave_remarks(volturnus()) == []
 
 
+@pytest.mark.slow
 def test_a_platform_that_does_not_rest_as_it_was_drawn_is_told(tmp_path: Path) -> None:
     file = platform_in(tmp_path, excitation=False)
     assert rest_remarks(jh.load_model(file), jnp.zeros(6)) == []  # nothing is drawn

@@ -154,6 +154,7 @@ def campaign(folder: Path, kind: str, period: float) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_campaign_tells_waves_outside(tmp_path: Path) -> None:
     """A regular test outside is an error, an irregular one a warning, also for a candidate's table; one inside is none."""
     excitation(tmp_path, 0.5, 1.2)
