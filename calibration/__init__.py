@@ -23,7 +23,8 @@ from calibration.result import Calibration, Estimate, Series, TestFit
 from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats
 from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.further_tests import decay_information, effective_noise, expected_information, rank_tests
-from calibration.uncertainty.likelihood import Likelihood, likelihood
+from calibration.uncertainty.likelihood import Likelihood
+from calibration.uncertainty.likelihood_of_fit import likelihood
 from calibration.uncertainty.nuts import Samples, sample
 from calibration.uncertainty.profile import Profile, profile
 

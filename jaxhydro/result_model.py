@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
-from jaxhydro.errors import Positive
+from jaxhydro.input_schema import Positive
 
 
 class ResultModel(BaseModel):

@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from jaxhydro.errors import Consistent, InputError, NonNegative, Number, Problem, Schema, Text, suggest_path, validate
+from jaxhydro.errors import InputError, Problem, suggest_path
+from jaxhydro.input_schema import Consistent, NonNegative, Number, Schema, Text, validate
 
 Probability = Annotated[Number, Field(ge=0, le=1)]
 Motion = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]

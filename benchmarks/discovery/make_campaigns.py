@@ -10,7 +10,8 @@ from typing import Any
 from benchmarks.discovery.answer_file import read_json
 from benchmarks.discovery.cases import Case, cases
 from benchmarks.tank import BATCH, Spec, make_campaigns
-from jaxhydro.errors import InputError, Problem, Schema, validate
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.input_schema import Schema, validate
 
 TANK_SOURCES = [
     Path(__file__).resolve().parents[1] / name

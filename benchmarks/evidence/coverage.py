@@ -34,7 +34,7 @@ def of_campaign(name: str) -> dict[str, Any]:
     from calibration.campaign.load_campaign import load_campaign
     from calibration.fitting.decay_fit import conclude, prepare_fit, run_fit
     from calibration.uncertainty.bootstrap import bootstrap_blocks
-    from calibration.uncertainty.likelihood import likelihood_of
+    from calibration.uncertainty.likelihood_of_fit import likelihood_of
     from calibration.uncertainty.profile import profile
 
     index = int(name.removeprefix("campaign-"))
@@ -71,7 +71,7 @@ def of_measured(name: str) -> dict[str, list[float]]:
     """Of a measured decay: relative deviations with the residual as it is, as if it were white, and their ratio, by label."""
     from calibration.campaign.load_campaign import load_campaign
     from calibration.fitting.decay_fit import conclude, prepare_fit, run_fit
-    from calibration.uncertainty.likelihood import likelihood_of
+    from calibration.uncertainty.likelihood_of_fit import likelihood_of
 
     campaign = load_campaign(SHARED / "measured" / name)
     fit = prepare_fit(campaign)

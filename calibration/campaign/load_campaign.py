@@ -13,7 +13,7 @@ from calibration.campaign.checks import check_records
 from calibration.campaign.finding import Finding
 from calibration.campaign.manifest import Manifest, platform_source, read_manifest
 from calibration.campaign.manifest_sections import IN_WAVES
-from calibration.campaign.plausible import CampaignFinding, check_plausible
+from calibration.campaign.plausible import CampaignFinding, check_plausible, restoring_findings
 from calibration.campaign.records import Record, records_of
 from calibration.campaign.series import read_series
 from calibration.campaign.table_findings import check_tables, platform_findings
@@ -205,6 +205,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
         expected, hint = "a platform that floats at rest", _missing_restoring(platform)
         raise InputError(source, [Problem(manifest.platform, expected, str(error), hint)]) from None
     band = wave_band(manifest, model, records)
+    doubtful = (*restoring_findings(records, platform), *doubtful)
     doubtful = (*platform_findings(model, manifest.platform), *check_tables(records, model, band), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
         raise InputError(source, [*(finding.problem for finding in doubtful if isinstance(finding, CampaignFinding)), *grave])

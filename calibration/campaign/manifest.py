@@ -18,8 +18,9 @@ from pydantic import Field, PlainValidator, model_validator
 from calibration.campaign.manifest_checks import channel_problems, other_problems, test_problems
 from calibration.campaign.manifest_sections import WAVE, Calibrate, Channel, Name, Recording, Test, WaveChannel, Zero
 from calibration.campaign.stated_sizes import check_stated_size
-from jaxhydro.errors import Faults, InputError, Number, Positive, Problem, Schema, Text, read_yaml, suggest, validate
+from jaxhydro.errors import Faults, InputError, Problem, suggest
 from jaxhydro.files import campaign_file
+from jaxhydro.input_schema import Number, Positive, Schema, Text, read_yaml, validate
 
 StatedQuantity = Annotated[str | float, PlainValidator(check_stated_size)]
 

@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
 from calibration.campaign.stated_sea import Sea
-from jaxhydro.errors import Faults, NonNegative, Number, Positive, Problem, Schema, Text, shown
+from jaxhydro.errors import Faults, Problem, shown
+from jaxhydro.input_schema import NonNegative, Number, Positive, Schema, Text
 from jaxhydro.units import SI
 from jaxhydro.waves import second_order
 from jaxhydro.waves.irregular_sea import Acting

@@ -6,7 +6,8 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from jaxhydro.errors import Faults, Gamma, Number, Positive, Problem, Schema, Seed, Spreading, shown
+from jaxhydro.errors import Faults, Problem, shown
+from jaxhydro.input_schema import Gamma, Number, Positive, Schema, Seed, Spreading
 
 
 class System(Schema):

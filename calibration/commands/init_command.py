@@ -13,8 +13,9 @@ from calibration.new_campaign.column_guesses import ColumnGuess
 from calibration.new_campaign.draft_of_files import draft_of_files
 from calibration.new_campaign.draft_text import campaign_text
 from jaxhydro.cli.console import say, table
-from jaxhydro.errors import InputError, Problem, read_yaml
+from jaxhydro.errors import InputError, Problem
 from jaxhydro.files import MANIFEST, check_new_folder, staged
+from jaxhydro.input_schema import read_yaml
 from jaxhydro.platform.schema import Platform, builtin_platforms, builtin_text, load_platform
 
 PLATFORM_FILE = "platform.yaml"

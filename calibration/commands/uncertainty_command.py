@@ -24,7 +24,8 @@ from calibration.results.uncertainty_file import (
 from calibration.results.write_uncertainty import Uncertainty, write_uncertainty
 from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats, repeats
 from calibration.uncertainty.bootstrap_draws import Bootstrap
-from calibration.uncertainty.likelihood import Likelihood, likelihood_of, restored_fit
+from calibration.uncertainty.likelihood import Likelihood
+from calibration.uncertainty.likelihood_of_fit import likelihood_of, restored_fit
 from calibration.uncertainty.nuts import Samples, sample
 from calibration.uncertainty.profile import Profile, profile
 from jaxhydro.cli.console import complain, counting, progress, say, table

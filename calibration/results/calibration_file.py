@@ -11,7 +11,7 @@ from calibration.results.read_result import read_as
 from calibration.results.result_folder import Figure
 from calibration.results.sea_options_section import SeaOptions
 from calibration.results.strip_conventions import StripConventions
-from jaxhydro.errors import Number
+from jaxhydro.input_schema import Number
 from jaxhydro.platform.body import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 from jaxhydro.result_model import ReferenceSeaState, ResultModel
 

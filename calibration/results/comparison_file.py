@@ -6,7 +6,7 @@ from calibration.results.calibration_file import TestErrors
 from calibration.results.result_folder import Figure
 from calibration.results.sea_options_section import SeaOptions
 from calibration.results.strip_conventions import StripConventions
-from jaxhydro.errors import Number
+from jaxhydro.input_schema import Number
 from jaxhydro.result_model import ResultModel
 
 

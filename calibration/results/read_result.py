@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from calibration.results.result_folder import DIAGNOSIS_FILE, RESULT_FILE
-from jaxhydro.errors import InputError, Problem, suggest_path, validate
+from jaxhydro.errors import InputError, Problem, suggest_path
+from jaxhydro.input_schema import validate
 from jaxhydro.result_model import ResultModel
 
 S = TypeVar("S", bound=ResultModel)

@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from calibration.residuals.wave_options import Options
-from jaxhydro.errors import NonNegative, Positive
+from jaxhydro.input_schema import NonNegative, Positive
 from jaxhydro.result_model import ResultModel
 from jaxhydro.waves.irregular_sea import Acting
 from jaxhydro.waves.sea import Stretching

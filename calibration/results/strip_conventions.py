@@ -6,7 +6,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict
 
 from jaxhydro.dynamics.model import Model
-from jaxhydro.errors import Flag
+from jaxhydro.input_schema import Flag
 
 
 class StripConventions(BaseModel):

@@ -8,7 +8,7 @@ from calibration.formatting import bracketed, counted, interval, listed, number,
 from calibration.results.calibration_file import Parameter
 from calibration.results.result_folder import Figure
 from calibration.vocabulary import UNDETERMINED, Rows
-from jaxhydro.errors import Number
+from jaxhydro.input_schema import Number
 from jaxhydro.result_model import ResultModel
 
 INTERVAL_METHODS = {"profile": "Profile", "blocks": "Bootstrap, blocks", "repeats": "Bootstrap, repeats", "nuts": "NUTS"}

@@ -18,9 +18,6 @@ from calibration.results.diagnosis_file import (
     DiagnosisFile,
     EffectScore,
     Evidence,
-    ForceLaw,
-    ForceRelation,
-    ForceTerm,
     FoundEffect,
     MissingEffects,
     PlausibleSizeRange,
@@ -28,10 +25,9 @@ from calibration.results.diagnosis_file import (
     RejectedEffect,
     Residual,
     ResidualBand,
-    SavedLatentForce,
-    Unexplained,
 )
 from calibration.results.diagnosis_motions import motions, paired
+from calibration.results.latent_force_file import ForceLaw, ForceRelation, ForceTerm, SavedLatentForce, Unexplained
 from calibration.results.refusal_sentences import describe_refusal
 from calibration.results.result_folder import DIAGNOSIS_FILE, draw, outdated, write_motion
 from jaxhydro.files import staged

@@ -11,7 +11,8 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
-from jaxhydro.errors import InputError, Problem, read_yaml, shown, suggest, validate
+from jaxhydro.errors import InputError, Problem, shown, suggest
+from jaxhydro.input_schema import read_yaml, validate
 from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
 from jaxhydro.interop.mooring_system import NoCatenaries, catenary_section
 from jaxhydro.interop.raft_hull import HullMember, hull_member

@@ -11,7 +11,8 @@ import numpy as np
 from jaxtyping import Float
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
-from jaxhydro.errors import Consistent, Flag, NonNegative, Number, Problem, Text, Vector, shown
+from jaxhydro.errors import Problem, shown
+from jaxhydro.input_schema import Consistent, Flag, NonNegative, Number, Text, Vector
 
 OPEN = ConfigDict(frozen=True, extra="allow")
 Pair = tuple[Number, Number]

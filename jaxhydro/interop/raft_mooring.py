@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, field_validator
 
-from jaxhydro.errors import Consistent, Faults, NonNegative, Positive, Problem, Schema, Vector, shown, suggest
+from jaxhydro.errors import Faults, Problem, shown, suggest
+from jaxhydro.input_schema import Consistent, NonNegative, Positive, Schema, Vector
 from jaxhydro.interop.mooring_system import Attachment, LineType, MooringLine, MooringPoint, MooringSystem
 from jaxhydro.interop.raft_member import OPEN, Name
 

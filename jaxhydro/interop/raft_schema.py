@@ -11,7 +11,8 @@ import numpy as np
 from jaxtyping import Float
 from pydantic import BeforeValidator, Field
 
-from jaxhydro.errors import Consistent, NonNegative, Number, Positive, Problem, Schema, Text, Vector, shown
+from jaxhydro.errors import Problem, shown
+from jaxhydro.input_schema import Consistent, NonNegative, Number, Positive, Schema, Text, Vector
 from jaxhydro.interop.raft_member import OPEN, Name, RaftMember, Row
 
 

@@ -6,7 +6,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from jaxhydro.errors import Number, Schema, Vector
+from jaxhydro.input_schema import Number, Schema, Vector
 
 
 class AnchoredLine(Schema):

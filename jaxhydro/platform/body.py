@@ -7,7 +7,8 @@ import numpy as np
 from jaxtyping import Float
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from jaxhydro.errors import Consistent, Count, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text, Vector, shown
+from jaxhydro.errors import Faults, Problem, shown
+from jaxhydro.input_schema import Consistent, Count, Flag, NonNegative, Number, Positive, Schema, Text, Vector
 from jaxhydro.loads.drag.velocity_filters import MAX_CUTOFF, MAX_SLOW_SHARE
 
 STEP_LENGTH = 1e-6  # of a member's length, over which a step in its size is made

@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from jaxhydro.errors import Consistent, NonNegative, Positive, Problem, Schema, Text, shown, suggest
+from jaxhydro.errors import Problem, shown, suggest
+from jaxhydro.input_schema import Consistent, NonNegative, Positive, Schema, Text
 from jaxhydro.platform.anchored_line import AnchoredLine
 
 MAX_STRAIN = 0.25  # of a line in the reference position: twice that at which polyester ropes break

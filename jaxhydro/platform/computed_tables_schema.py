@@ -5,7 +5,8 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from jaxhydro.errors import Count, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text, shown
+from jaxhydro.errors import Faults, Problem, shown
+from jaxhydro.input_schema import Count, Flag, NonNegative, Number, Positive, Schema, Text
 from jaxhydro.interop.wamit_tables import By
 
 Body = Annotated[Count | Text, Field(description="a body's name, or in files of WAMIT and Nemoh its number from 1")]

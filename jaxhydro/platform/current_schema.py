@@ -7,7 +7,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from jaxhydro.errors import Consistent, NonNegative, Number, Problem, Schema, shown
+from jaxhydro.errors import Problem, shown
+from jaxhydro.input_schema import Consistent, NonNegative, Number, Schema
 
 LEVELS = 81  # heights at which a power law is stated, closer towards the bed, where it is steep
 

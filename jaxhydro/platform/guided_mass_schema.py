@@ -5,7 +5,8 @@ from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import BeforeValidator, Field
 
-from jaxhydro.errors import Consistent, Flag, Positive, Problem, Text, Vector, shown
+from jaxhydro.errors import Problem, shown
+from jaxhydro.input_schema import Consistent, Flag, Positive, Text, Vector
 
 
 def _as_list(value: Any) -> Any:

@@ -6,7 +6,8 @@ import numpy as np
 from jaxtyping import Float
 from pydantic import AfterValidator, RootModel, model_validator
 
-from jaxhydro.errors import Faults, Number, Problem, shown
+from jaxhydro.errors import Faults, Problem, shown
+from jaxhydro.input_schema import Number
 
 Matrix6 = Float[np.ndarray, "6 6"]
 

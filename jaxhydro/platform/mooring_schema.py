@@ -5,7 +5,8 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from jaxhydro.errors import Faults, NonNegative, Number, Positive, Problem, Schema, Vector, shown
+from jaxhydro.errors import Faults, Problem, shown
+from jaxhydro.input_schema import NonNegative, Number, Positive, Schema, Vector
 from jaxhydro.platform.matrix_schema import Entries, Matrix6, Stiffness
 
 

@@ -9,20 +9,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from jaxhydro.environment import STANDARD_GRAVITY
-from jaxhydro.errors import (
-    Consistent,
-    InputError,
-    Number,
-    Positive,
-    Problem,
-    Schema,
-    Text,
-    Vector,
-    read_yaml,
-    shown,
-    suggest,
-    validate,
-)
+from jaxhydro.errors import InputError, Problem, shown, suggest
+from jaxhydro.input_schema import Consistent, Number, Positive, Schema, Text, Vector, read_yaml, validate
 from jaxhydro.platform.body import Coefficients, Inertia, Member, Part, RigidBody
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.computed_tables_schema import Drift, Excitation, Hydrostatics, Radiation

@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from jaxhydro.errors import Consistent, NonNegative, Positive, Problem, Text, shown, suggest
+from jaxhydro.errors import Problem, shown, suggest
+from jaxhydro.input_schema import Consistent, NonNegative, Positive, Text
 from jaxhydro.platform.anchored_line import AnchoredLine
 
 Column = Annotated[tuple[NonNegative, ...], Field(min_length=2)]

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from jaxhydro.errors import Consistent, NonNegative, Positive, Problem, Text, Vector, shown
+from jaxhydro.errors import Problem, shown
+from jaxhydro.input_schema import Consistent, NonNegative, Positive, Text, Vector
 
 
 class TunedMassDamper(Consistent):

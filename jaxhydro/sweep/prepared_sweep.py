@@ -12,7 +12,8 @@ from jaxtyping import Float
 from jaxhydro.calibrated_model import calibration_file
 from jaxhydro.dynamics.rest_remarks import wave_remarks
 from jaxhydro.dynamics.statics import stable_modes
-from jaxhydro.errors import InputError, Problem, read_yaml
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.input_schema import read_yaml
 from jaxhydro.platform.schema import builtin_platforms, builtin_text, load_platform
 from jaxhydro.remarks import Remark
 from jaxhydro.sweep.batch import Setup, pace_of_platform, setup_of

@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from jaxhydro.errors import MAX_SPREADING, InputError, Problem, read_yaml, shown, suggest, validate
+from jaxhydro.errors import InputError, Problem, shown, suggest
+from jaxhydro.input_schema import MAX_SPREADING, read_yaml, validate
 from jaxhydro.sweep.sea_states import UNITS as UNITS_OF_STATES
 from jaxhydro.sweep.sea_states import swell_problems
 from jaxhydro.sweep.sweep_schema import COLUMNS, SeaState, Sweep

@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from jaxhydro.errors import Number
+from jaxhydro.input_schema import Number
 from jaxhydro.result_model import ReferenceSeaState, ResultModel
 
 

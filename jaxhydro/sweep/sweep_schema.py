@@ -8,20 +8,8 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, usual_transient
 from jaxhydro.environment import DOFS
-from jaxhydro.errors import (
-    Consistent,
-    Faults,
-    Flag,
-    Gamma,
-    NonNegative,
-    Number,
-    Positive,
-    Problem,
-    Schema,
-    Seed,
-    Spreading,
-    Text,
-)
+from jaxhydro.errors import Faults, Problem
+from jaxhydro.input_schema import Consistent, Flag, Gamma, NonNegative, Number, Positive, Schema, Seed, Spreading, Text
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.sweep.sea_states import OF_SWELL, swell_problems, table_problems
 from jaxhydro.waves.sea import Stretching

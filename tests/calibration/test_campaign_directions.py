@@ -17,7 +17,8 @@ from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.residuals.measured_seas import compare
 from calibration.residuals.run_seas import seas_of
 from calibration.residuals.wave_options import Options
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.waves.recorded_waves import record_components
 from jaxhydro.waves.spreading import circular_moments
 

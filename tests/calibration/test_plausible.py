@@ -140,3 +140,46 @@ def test_waves_that_cannot_stand_are_told(factor, severity):
     )
     found = check_plausible([record], campaign.model, zeroed=False)
     assert [one.severity for one in found] == ([severity] if severity else [])
+
+
+SHIP = """
+name: Ship, model at 1:50
+water: {density: 1000.0, depth: 3.0}
+rigid_body: {mass: 800.0, centre_of_mass: [0, 0, -0.03], inertia: {Ixx: 90.0, Iyy: 1200.0, Izz: 1200.0}}
+members: []
+added_mass: {A44: 15.0}
+linear_damping: {B44: 2.0}
+hydrostatics: {RESTORING}
+mooring: {kind: none}
+"""
+
+
+@pytest.mark.parametrize(
+    ("restoring", "told"),
+    [
+        ("C44: 650.0", ["heave: C33, or take heave", "pitch: C55, or take pitch"]),
+        ("C44: 650.0, C33: 30000.0, C55: 40000.0", []),
+        ("C33: 30000.0, C55: 40000.0", ["roll: C44"]),
+    ],
+)
+def test_a_measured_motion_that_nothing_restores_is_told(tmp_path, restoring, told):
+    """A fit of the roll of a ship would pitch it to lengthen its period."""
+    time = np.arange(0, 40, 0.1)
+    roll = np.radians(8) * np.exp(-0.02 * time) * np.cos(2 * np.pi * time / 2.5)
+    small = np.random.default_rng(0).normal(0, 1e-4, (2, len(time)))
+    np.savetxt(
+        tmp_path / "roll.csv", np.stack([time, roll, *small], axis=1), delimiter=",", header="t,phi,z,theta", comments=""
+    )
+    (tmp_path / "platform.yaml").write_text(SHIP.replace("RESTORING", restoring))
+    (tmp_path / "campaign.yaml").write_text(
+        "name: ship\nplatform: platform.yaml\nscale: 1\n"
+        "channels: {time: {column: t, unit: s}, roll: {column: phi, unit: rad}, heave: {column: z, unit: m}, "
+        "pitch: {column: theta, unit: rad}}\n"
+        "tests: [{id: roll, kind: decay, degree_of_freedom: roll, file: roll.csv, use: fit}]\n"
+    )
+    found = [
+        f"{finding.channel}: {finding.message.partition('hydrostatics.')[2].partition(' out')[0]}"
+        for finding in load_campaign(tmp_path).findings
+        if "nothing restores" in finding.message
+    ]
+    assert found == told

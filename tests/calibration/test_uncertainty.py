@@ -19,7 +19,8 @@ from calibration.identifiability.residual_spectra import NoiseColour, fit_colour
 from calibration.plots.uncertainty_figures import draws_figure, profile_figure
 from calibration.uncertainty import nuts as sampling
 from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats, repeats
-from calibration.uncertainty.likelihood import Likelihood, likelihood
+from calibration.uncertainty.likelihood import Likelihood
+from calibration.uncertainty.likelihood_of_fit import likelihood
 from calibration.uncertainty.nuts import potential_energy, sample, whitening
 from calibration.uncertainty.profile import Profile, profile
 from jaxhydro.errors import InputError

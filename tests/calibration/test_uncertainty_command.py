@@ -13,7 +13,8 @@ from calibration import calibrate, load_campaign
 from calibration.formatting import interval, to_width
 from calibration.results.write_calibration import write_calibration
 from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats
-from calibration.uncertainty.likelihood import Likelihood, likelihood
+from calibration.uncertainty.likelihood import Likelihood
+from calibration.uncertainty.likelihood_of_fit import likelihood
 from calibration.uncertainty.profile import profile
 
 

@@ -19,7 +19,8 @@ from ruamel.yaml import YAML
 
 import jaxhydro as jh
 from jaxhydro.dynamics.static_forces import mooring_stiffness
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import CatenaryLines
 from jaxhydro.loads.catenary.catenary_profile import Segments, reach
 from jaxhydro.loads.catenary.catenary_tension import end_tension

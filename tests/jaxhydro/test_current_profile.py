@@ -11,7 +11,8 @@ from test_loads import COEFFICIENTS, COLUMN, PONTOON, RHO, G, build, force, only
 from test_water_effects import POSITION, VELOCITY, irregular
 
 import jaxhydro as jh
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import MorisonDrag
 from jaxhydro.platform.current_schema import SteadyCurrent
 from jaxhydro.water import Current, CurrentProfile

@@ -12,7 +12,8 @@ from one_program import complex_amplitude, elevation, vector
 
 import jaxhydro as jh
 from jaxhydro.environment import Environment
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.interop.directional_file import read_directional_spectrum
 from jaxhydro.sweep.batch import Setup, sea_of
 from jaxhydro.sweep.cases import Plan, plan_of

@@ -32,7 +32,8 @@ import jaxhydro as jh
 from calibration.decay_analysis.model_damping import model_damping
 from calibration.parameters.space import default_free, parameter_space
 from jaxhydro.dynamics import integrate
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import MorisonDrag
 from jaxhydro.loads.drag import (
     DRAG_LAWS,

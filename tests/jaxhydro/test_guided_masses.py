@@ -19,7 +19,8 @@ from calibration.parameters.families import parameter_family
 from calibration.parameters.space import default_free, parameter_space
 from calibration.results.applied_calibration import CAMPAIGN_PARAMETERS
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import GuidedMasses
 from jaxhydro.platform.schema import Platform
 from jaxhydro.rotations import rotation

@@ -9,7 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import LiquidColumnDampers
 from jaxhydro.platform.schema import Platform
 from jaxhydro.rotations import rotation

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.interop.conversion import Treatment
 from jaxhydro.interop.openfast.deck_current import read_current
 from jaxhydro.interop.openfast.open_file import read_keyed_file

@@ -14,7 +14,8 @@ from one_program import flow, one_program
 
 import jaxhydro as jh
 from jaxhydro.dynamics.model import Model
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import Buoyancy
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import Platform

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from jaxhydro.errors import MAX_PRINTED_PROBLEMS, InputError, read_yaml, validate
+from jaxhydro.errors import MAX_PRINTED_PROBLEMS, InputError
+from jaxhydro.input_schema import read_yaml, validate
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.mooring_schema import Line, LinearSprings, StiffnessMatrix
 from jaxhydro.platform.schema import Member, Platform, RigidBody, builtin_platforms, load_platform

@@ -11,7 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import jaxhydro
-from jaxhydro.errors import InputError, Problem, read_yaml, suggest, validate
+from jaxhydro.errors import InputError, Problem, suggest
+from jaxhydro.input_schema import read_yaml, validate
 from jaxhydro.platform.schema import Platform, builtin_platforms, load_platform
 
 # --- files that are no mapping at all

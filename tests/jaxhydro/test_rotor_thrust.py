@@ -8,7 +8,8 @@ from test_loads import COLUMN, SPRINGS, build, force, only
 
 import jaxhydro as jh
 from jaxhydro.dynamics.statics import equilibrium
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import LinearDamping, RotorThrust, StaticForce
 
 HUB, THRUST, DAMPING = (-5.0, 1.0, 150.0), 2e6, 1.2e5

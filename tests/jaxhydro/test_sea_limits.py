@@ -6,7 +6,7 @@ import pytest
 
 from jaxhydro.cli.sea_command import _limits
 from jaxhydro.environment import Environment
-from jaxhydro.errors import validate
+from jaxhydro.input_schema import validate
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.sweep_remarks import near_limits
 from jaxhydro.sweep.sweep_schema import Sweep

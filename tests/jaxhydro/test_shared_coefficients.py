@@ -19,7 +19,8 @@ from calibration.discovery.effects.candidates import with_effects
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import NoticeableScales
 from calibration.parameters.space import match_free_labels
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import WaveExcitation
 from jaxhydro.loads.sea_state_law import SeaStateLaw
 from jaxhydro.platform.schema import Platform

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from calibration import load_campaign
 from jaxhydro.cli.app import app
-from jaxhydro.errors import validate
+from jaxhydro.input_schema import validate
 from jaxhydro.platform.build import build, load_model
 from jaxhydro.platform.schema import Platform
 

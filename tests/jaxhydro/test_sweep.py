@@ -12,7 +12,8 @@ from fake_sweep import SWEEP, written
 import jaxhydro as jh
 from calibration.report.write_report import write_report
 from jaxhydro.dynamics.time_steps import largest_step
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.sweep.batch import Setup, prepared_for, sea_of
 from jaxhydro.sweep.cases import Plan, plan_of
 from jaxhydro.sweep.lifetime import exceedance, lifetime, weighted

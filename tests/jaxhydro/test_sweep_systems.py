@@ -7,7 +7,8 @@ from fake_sweep import SWEEP, written
 
 from jaxhydro.dynamics.requested_sea import RequestedSea
 from jaxhydro.dynamics.sea_of_request import build_sea
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.sweep import batch
 from jaxhydro.sweep.batch import run_outcomes, sea_of, setup_of
 from jaxhydro.sweep.cases import Plan, plan_of

@@ -14,7 +14,8 @@ from scipy.spatial.transform import Rotation
 
 import jaxhydro as jh
 from jaxhydro.dynamics.model import Model
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import Buoyancy, EndInertia, MorisonDrag
 from jaxhydro.platform.build import build as built
 from jaxhydro.platform.schema import Platform

@@ -12,7 +12,8 @@ from one_program import one_program
 
 import jaxhydro as jh
 from jaxhydro.dynamics.static_forces import line_states, mooring_stiffness
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import MooringLines, TensionTableLines
 from jaxhydro.loads.tension_table_lines import TensionTable
 from jaxhydro.platform.build import build

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import jaxhydro as jh
-from jaxhydro.errors import InputError, validate
+from jaxhydro.errors import InputError
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import TunedMassDampers
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import Platform

@@ -7,7 +7,7 @@ import pytest
 
 import jaxhydro as jh
 from jaxhydro.dynamics.requested_sea import Record, RequestedSea
-from jaxhydro.errors import validate
+from jaxhydro.input_schema import validate
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.sweep_schema import Sweep
 from jaxhydro.waves.wave_bands import CUTOFF, LOW, of_records, of_spectra, wave_energy

@@ -19,7 +19,7 @@ from calibration.campaign.manifest import Manifest
 from calibration.campaign.records import load_records
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import EquilibriumError, equilibrium, natural_modes
-from jaxhydro.errors import validate
+from jaxhydro.input_schema import validate
 from jaxhydro.loads import Hysteresis
 from jaxhydro.platform.build import build as built
 from jaxhydro.platform.schema import Platform
