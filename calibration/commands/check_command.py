@@ -4,6 +4,7 @@ import shlex
 from pathlib import Path
 
 from calibration.campaign.load_campaign import load_campaign
+from calibration.parameters.space import match_free_labels
 from calibration.plots.check_figures import figures
 from calibration.report import check_tables
 from calibration.report.tables import findings
@@ -21,9 +22,11 @@ def check_campaign(path: Path, out: Path | None) -> None:
         out: Folder of the figures; None: none are drawn.
 
     Raises:
-        InputError: If the campaign cannot be read.
+        InputError: If the campaign cannot be read, or frees what its platform does not have.
     """
     campaign = load_campaign(path)
+    wish = campaign.manifest.calibrate
+    match_free_labels(campaign.model, (), wish.free, wish.fixed, str(campaign.folder / "campaign.yaml"))
     compared = check_tables.compare_periods(campaign.records, natural_modes(campaign.model))
     scaled = "" if campaign.manifest.scale == 1 else ", at the scale of platform.yaml"
     table(f"{campaign.manifest.name}{scaled}", *check_tables.tests(campaign), left=5)
@@ -35,7 +38,8 @@ def check_campaign(path: Path, out: Path | None) -> None:
         with style(), staged(out) as temporary:
             for name, figure in figures(campaign):
                 save(figure, temporary / name)
-        say(f"The hull and every record are drawn in {out}")
+        drawn = "The hull and every record are" if campaign.platform.members else "Every record is"
+        say(f"{drawn} drawn in {out}")
     doubts = list(check_tables.doubts(campaign, compared))
     say(check_tables.verdict(campaign, doubts))
     if doubts:

@@ -129,11 +129,12 @@ def calibration_sentence(summary: CalibrationSummary) -> str:
     """
     # of a model that does not follow a decay, values mean little
     determined = [] if summary.not_followed else [_determined(summary)]
-    parts = [*map(agreement_phrase, summary.agreements), *determined]
+    lost = len(summary.not_followed)
+    followed = [a for a in summary.agreements if not (a.kind == "decay" and a.use == "fit" and lost >= a.tests)]
+    parts = [*map(agreement_phrase, followed), *determined]
     # bands make clauses long: they are sentences of their own
-    sentences = (
-        [f"{part}." for part in parts] if any(agreement.bands for agreement in summary.agreements) else [f"{'; '.join(parts)}."]
-    )
+    apart = any(agreement.bands for agreement in followed)
+    sentences = [f"{part}." for part in parts] if apart or not parts else [f"{'; '.join(parts)}."]
     return " ".join(
         [*_failures(summary), *(re.sub("^(all|no) ", lambda word: word[0].capitalize(), sentence) for sentence in sentences)]
     )
@@ -143,7 +144,8 @@ def _failures(summary: CalibrationSummary) -> Iterator[str]:
     lost = summary.not_followed
     if lost:
         worst = max(lost.values())
-        yield f"The model does not follow {_named(list(lost), 'decay')}: RMSE up to {percent(worst)} of the motion."
+        upto = "up to " if len(lost) > 1 else ""
+        yield f"The model does not follow {_named(list(lost), 'decay')}: RMSE {upto}{percent(worst)} of the motion."
     if summary.far_off:
         id, off = max(summary.far_off.items(), key=lambda item: item[1].error)
         energy = f"{BANDS.get(off.band, off.band)} {off.channel} energy"

@@ -165,14 +165,16 @@ def interval_sentence(summary: IntervalSummary) -> str:
 
     "All 11 coefficients known to 0.03-10 % (95 % intervals), the least well pontoon.Cd_t."
     """
-    widths, rest = summary.half_widths, summary.undetermined
-    total = len(widths) + len(rest)
+    widths = {label: width for label, width in summary.half_widths.items() if width <= 1}
+    wide, rest = [label for label in summary.half_widths if label not in widths], summary.undetermined
+    total = len(summary.half_widths) + len(rest)
     sentence = "" if summary.converged else "The fit did not converge. "
     if not widths:
         return f"{sentence}None of {counted(total, 'coefficient')} has a {summary.level} interval that says anything."
-    many = f"All {total} coefficients" if not rest and total > 1 else f"{len(widths)} of {counted(total, 'coefficient')}"
+    many = f"All {total} coefficients" if len(widths) == total > 1 else f"{len(widths)} of {counted(total, 'coefficient')}"
     sentence += f"{many} known to {percent_span(list(widths.values()))} ({summary.level} intervals)"
     sentence += f", the least well {max(widths, key=lambda label: widths[label])}" if len(widths) > 1 else ""
+    sentence += f"; intervals wider than twice the value: {listed(wide)}" if wide else ""
     return f"{sentence}; {UNDETERMINED}: {listed(rest)}." if rest else f"{sentence}."
 
 

@@ -112,6 +112,18 @@ def test_command_refuses_what_cannot_be_read(tmp_path):
     assert result.exit_code == 2 and not (tmp_path / "out").exists()
 
 
+def test_command_refuses_to_free_what_the_platform_does_not_have(tmp_path):
+    """As `calibrate` does, which comes next."""
+    folder = small_campaign(tmp_path / "campaign")
+    text = (folder / "campaign.yaml").read_text()
+    assert "free: [pontoon.Ca_z" in text
+    (folder / "campaign.yaml").write_text(text.replace("free: [pontoon.Ca_z", "free: [pontoon.Ca_x"))
+    result = RUNNER.invoke(cli.app, ["check", str(folder), "--out", str(tmp_path / "out")], env={"COLUMNS": "160"})
+    said = " ".join(result.output.split())
+    assert result.exit_code == 2 and "calibrate.free: expected a parameter of this platform" in said, said
+    assert not (tmp_path / "out").exists()
+
+
 def test_outline_has_the_member_s_size():
     box = Member(
         "box", "hull", False, np.array([-10.0, 0, -3]), np.array([10.0, 0, -3]), np.array([0.0, 1]), np.array([[4.0, 6]] * 2)

@@ -78,13 +78,13 @@ def test_coefficients_that_are_not_determined_are_named_while_they_are_few() -> 
 def test_what_went_wrong_comes_first() -> None:
     """A fit that leaves a record behind is not called unconverged as well."""
     bad = {"s": ("decay", "fit", LOW), "h": ("decay", "fit", {"heave": error(0.73)})}
-    start = "The model does not follow h: RMSE up to 73 % of the motion. 2 decays followed"
+    start = "The model does not follow h: RMSE 73 % of the motion. 2 decays followed"
     assert said(saved(bad, SURE, converged=False)).startswith(start)
     assert said(saved(bad, SURE)).startswith(start)  # by a robust loss, which converges all the same
     good = {"s": ("decay", "fit", LOW)}
     assert said(saved(good, SURE, converged=False)).startswith("The fit did not converge. 1 decay followed")
     lost = {f"s-{i}": ("decay", "fit", {"surge": error(0.6)}) for i in range(5)}
-    assert said(saved(lost, SURE)).startswith("The model does not follow 5 decays: RMSE up to 60 %")
+    assert said(saved(lost, SURE)) == "The model does not follow 5 decays: RMSE up to 60 % of the motion."
 
 
 def test_waves_are_told_by_their_bands() -> None:
@@ -115,6 +115,10 @@ def test_intervals_in_one_sentence() -> None:
     some = IntervalSummary(False, "90 %", {"a": 0.1}, ("c", "d"))
     assert interval_sentence(some) == (
         "The fit did not converge. 1 of 3 coefficients known to 10 % (90 % intervals); not determined: c and d."
+    )
+    wide = IntervalSummary(True, "95 %", {"a": 0.002, "b": 35.5, "c": 1.9}, ())
+    assert interval_sentence(wide) == (
+        "1 of 3 coefficients known to 0.20 % (95 % intervals); intervals wider than twice the value: b and c."
     )
     assert interval_sentence(IntervalSummary(True, "95 %", {}, ("a",))).startswith("None of 1 coefficient has a 95 % interval")
 
