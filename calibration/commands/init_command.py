@@ -141,7 +141,10 @@ def _about_platform(draft: CampaignDraft, folder: Path) -> str:
     return (
         f"Check {path}: it is a copy of {draft.platform}."
         if draft.own_platform
-        else (f"Edit {path}: it describes {draft.platform}. Put your platform in, or begin with another (jaxhydro platforms).")
+        else (
+            f"Edit {path}: it describes {draft.platform}. Put your platform in, or begin with another (jaxhydro platforms). "
+            'A ship in roll needs no members: docs/formats.md, "The smallest platform".'
+        )
     )
 
 
