@@ -36,7 +36,7 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
 EDGE = {  # third-party or built-in, and the only folders or modules that may use it
     "matplotlib": {"jaxhydro.plots", "jaxhydro.sweep.sweep_figures", "calibration.plots"},
     "PIL": {"jaxhydro.plots"},
-    "ruamel": {"jaxhydro.errors", "jaxhydro.interop.yaml_text"},
+    "ruamel": {"jaxhydro.input_schema", "jaxhydro.interop.yaml_text"},
     "yaml": set(),
     "pandas": {
         *("jaxhydro.display", "calibration.display"),
