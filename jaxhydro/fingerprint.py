@@ -56,10 +56,7 @@ def content_hash(*inputs: Any) -> str:
     A path stands for the content of its file, wherever that is. Of classes and functions that are not the packages' own the
     source is taken, too. Raises TypeError for what has no content that can be told.
     """
-    digest = hashlib.sha256()
-    source_files: dict[str, None] = {}
-    for part in _content(inputs, source_files, ()):
-        digest.update(part + b"\0")
+    digest, source_files = _digest(inputs)
     for path in source_files:
         if path != NO_FILE:
             digest.update(Path(path).read_bytes() + b"\0")
@@ -71,13 +68,18 @@ def installed_content_hash(*inputs: Any) -> str:
 
     Raises TypeError where a class or function is a user's own: in a running process it may be older than its file.
     """
-    digest = hashlib.sha256()
-    source_files: dict[str, None] = {}
-    for part in _content(inputs, source_files, ()):
-        digest.update(part + b"\0")
+    digest, source_files = _digest(inputs)
     if source_files:
         raise TypeError(f"a class or function is defined in {', '.join(source_files)}")
     return digest.hexdigest()
+
+
+def _digest(inputs: tuple[Any, ...]) -> "tuple[hashlib._Hash, dict[str, None]]":
+    """Digest of inputs, and the files that classes and functions of a user's own are written in."""
+    digest, source_files = hashlib.sha256(), dict[str, None]()
+    for part in _content(inputs, source_files, ()):
+        digest.update(part + b"\0")
+    return digest, source_files
 
 
 def _content(value: Any, source_files: dict[str, None], within: tuple[int, ...]) -> Iterator[bytes]:

@@ -144,8 +144,8 @@ def _failures(summary: CalibrationSummary) -> Iterator[str]:
     lost = summary.not_followed
     if lost:
         worst = max(lost.values())
-        upto = "up to " if len(lost) > 1 else ""
-        yield f"The model does not follow {_named(list(lost), 'decay')}: RMSE {upto}{percent(worst)} of the motion."
+        at_most = "up to " if len(lost) > 1 else ""
+        yield f"The model does not follow {_named(list(lost), 'decay')}: RMSE {at_most}{percent(worst)} of the motion."
     if summary.far_off:
         id, off = max(summary.far_off.items(), key=lambda item: item[1].error)
         energy = f"{BANDS.get(off.band, off.band)} {off.channel} energy"
