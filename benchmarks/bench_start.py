@@ -23,6 +23,8 @@ from benchmarks.bench import processor, revision
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results-start.md"
+EMBEDDED = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
+ROLL_DECAY = ROOT.parent / "shared" / "measured" / "kvlcc2"  # its commands are left out where it is absent
 COMMANDS = {
     "statics of VolturnUS-S": ["statics", "volturnus-s-focal"],
     "a decay of 300 s": ["simulate", "volturnus-s", "--release", "surge=5", "--duration", "300", "--out", "{out}"],
@@ -30,10 +32,15 @@ COMMANDS = {
     "the same without figures": [
         *("simulate", "volturnus-s", "--hs", "3", "--tp", "9", "--duration", "1200", "--out", "{out}", "--no-figures")
     ],
+    "init from a data file": ["init", "{out}", str(EMBEDDED / "surge-1.csv")],
     "check of the built-in campaign": ["check", "volturnus-s-decays", "--out", "{out}"],
     "the README's Python up to its decay": ["{decay}"],
     "the README's whole Python": ["{example}"],
     "demo: nine decays calibrated": ["demo", "--out", "{out}"],
+}
+OF_ROLL_DECAY = {
+    "calibrate of one measured roll decay": ["calibrate", str(ROLL_DECAY), "--out", "{out}"],
+    "diagnose of the same": ["diagnose", str(ROLL_DECAY), "--out", "{out}"],
 }
 SKIPPED_BEFORE = ("statics of VolturnUS-S",)  # a command that older sources lack
 HEADS = ("command", "cache", "programs", "tracing and lowering (s)", "compiling (s)", "CPU time (s)", "wall time (s)")
@@ -93,7 +100,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=RESULTS)
     asked = parser.parse_args()
     rows = []
-    for name, words in COMMANDS.items():
+    for name, words in (COMMANDS | (OF_ROLL_DECAY if ROLL_DECAY.is_dir() else {})).items():
         sources = {"": ROOT}
         if asked.before is not None and name not in SKIPPED_BEFORE:
             sources = {", before": asked.before, ", now": ROOT}

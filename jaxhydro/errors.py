@@ -33,7 +33,15 @@ class Problem:
         return " ".join((f"{line}. {self.hint}" if self.hint else line).split())
 
 
-class CheckpointWarning(UserWarning):
+class PrintedWarning(UserWarning):
+    """A warning that commands print as they print their messages."""
+
+
+class WaveOrderWarning(PrintedWarning):
+    """Wave records that lack the second-order waves that a model is driven with."""
+
+
+class CheckpointWarning(PrintedWarning):
     """A checkpoint that cannot be resumed: it has other inputs or another program, or is damaged."""
 
 

@@ -189,11 +189,15 @@ def _write(path: Path, described: Any, program: bytes) -> None:
     text = json.dumps(described).encode()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+        file = tempfile.NamedTemporaryFile(dir=path.parent, delete=False)  # noqa: SIM115
+    except OSError:
+        return
+    try:
+        with file:
             file.write(b"\n".join([_checksum(text + program), text, program]))
         os.replace(file.name, path)
     except OSError:
-        return
+        Path(file.name).unlink(missing_ok=True)
 
 
 def _checksum(content: bytes) -> bytes:

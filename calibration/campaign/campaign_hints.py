@@ -23,6 +23,7 @@ LARGEST_RELEASE, SMALLEST_RELEASE = 1.0, 1e-3  # of the radius of gyration: rele
 USUAL_RELEASES = (0.003, 0.6)  # of the radius of gyration, or rad: releases as they are
 LARGEST_RELEASE_ANGLE, SMALLEST_RELEASE_ANGLE = math.radians(60.0), 4e-3
 DEGREES_PER_RADIAN = 180 / math.pi
+SAME_SCALE = "If records and platform file are at one scale, `scale` is 1"
 
 
 class Hint(NamedTuple):
@@ -92,8 +93,7 @@ def _period_hints(records: Sequence[Record], modes: Modes, scale: float) -> Iter
 def _time_factors(scale: float) -> Iterator[tuple[float, str]]:
     if scale != 1:
         root = f"the square root of `scale`, {scale**0.5:.3g}"
-        full = "Are the records at full scale already (then `scale` is 1), or is the platform at the model's scale?"
-        yield scale**0.5, f"longer by {root}. {full}" if scale > 1 else f"shorter by {root}. Is `scale` turned round?"
+        yield scale**0.5, f"longer by {root}. {SAME_SCALE}" if scale > 1 else f"shorter by {root}. Is `scale` turned round?"
         yield scale**-0.5, f"off by {root}. Were times scaled down before?"
         turned = f"is `scale` turned round (1:{1 / scale:.3g} is `scale: {1 / scale:.3g}`)?"
         yield scale, "longer by `scale`. Times go with its square root: were they scaled before?" if scale > 1 else turned

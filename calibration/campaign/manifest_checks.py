@@ -52,6 +52,7 @@ def test_problems(manifest: Manifest) -> Iterator[Problem]:
     if not manifest.tests:
         yield Problem("tests", "one test at least", "none")
     ids = [test.id for test in manifest.tests]
+    misspelt = any(name not in CHANNELS for name in manifest.channels)  # told already; which motion was meant is not known
     for i, test in enumerate(manifest.tests):
         where = f"tests[{i}]"
         if not re.fullmatch(r"[\w+=][\w .,()+=@-]*", test.id) or test.id[-1] in " ." or len(test.id) > 100:
@@ -61,11 +62,11 @@ def test_problems(manifest: Manifest) -> Iterator[Problem]:
         if test.repeat_of is not None and (test.repeat_of not in ids or test.repeat_of == test.id):
             yield _unknown(f"{where}.repeat_of", "the id of another test", test.repeat_of, set(ids) - {test.id})
         present = [name for name in manifest.channels if name in DOFS and test.channels.get(name, True) is not None]
-        if not present:
+        if not present and not misspelt:
             yield Problem(f"{where}.channels", "one motion at least", "none that is left")
         if test.kind == "decay" and test.degree_of_freedom is None:
             yield Problem(f"{where}.degree_of_freedom", "the motion that was released: " + ", ".join(DOFS), "nothing")
-        elif test.degree_of_freedom is not None and test.degree_of_freedom not in present:
+        elif present and not misspelt and test.degree_of_freedom is not None and test.degree_of_freedom not in present:
             yield Problem(
                 f"{where}.degree_of_freedom", "a motion that has a channel: " + ", ".join(present), repr(test.degree_of_freedom)
             )

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from calibration.campaign.campaign_hints import Hint, campaign_hints
+from calibration.campaign.campaign_hints import SAME_SCALE, Hint, campaign_hints
 from calibration.campaign.finding import Finding, Severity
 from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.records import Record
@@ -151,7 +151,7 @@ def _record_findings(
 def _period_reason(ratio: float, scale: float) -> tuple[str, bool]:
     """What may explain a measured period over the model's, and whether `scale` does."""
     if scale != 1 and abs(np.log(ratio / scale**0.5)) < SCALE_TOLERANCE:
-        return f"longer by the square root of `scale`, {scale**0.5:.3g}. Are the records at full scale already?", True
+        return f"longer by the square root of `scale`, {scale**0.5:.3g}. {SAME_SCALE}", True
     if scale != 1 and abs(np.log(ratio * scale**0.5)) < SCALE_TOLERANCE:
         return f"shorter by the square root of `scale`, {scale**0.5:.3g}. Were times scaled down before?", True
     if scale == 1 and 1 / WRONG_PERIOD_RATIO < ratio < 1 / UNUSUAL_PERIOD_RATIO:

@@ -22,7 +22,7 @@ from calibration.fitting.progress import Progress
 from calibration.residuals.measured_seas import NO_ZERO
 from calibration.residuals.wave_options import Options, options_of
 from jaxhydro.dynamics.model import Model
-from jaxhydro.errors import CheckpointWarning
+from jaxhydro.errors import CheckpointWarning, WaveOrderWarning
 from jaxhydro.interrupts import stopping
 
 UNKNOWN_ZERO_NOTE = f"{NO_ZERO}, so that a sensor's zero elsewhere is taken for ballast, or for a force"
@@ -59,6 +59,7 @@ def diagnose(
 
     Warns:
         CheckpointWarning: If a checkpoint file is damaged or of another run; the search then starts anew.
+        WaveOrderWarning: If the wave records lack the second-order waves of theory, and the campaign does not state `records`.
     """
     begun, campaign = clock.monotonic(), campaign.with_model(model)
 
@@ -86,6 +87,8 @@ def diagnose(
         return search
 
     search = begun_with(campaign)
+    if search.study.order_hint:  # before minutes are spent on it
+        warnings.warn(search.study.order_hint, WaveOrderWarning, stacklevel=2)
     wrong = {} if states else reversed_channels(campaign, search)
     if wrong:
         search = begun_with(campaign := with_signs_reversed(campaign, list(wrong)))

@@ -11,7 +11,7 @@ from calibration.discovery.acceptance import worsening
 from calibration.discovery.diagnosis import Finding
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import capitalised, effect_in_words
-from calibration.discovery.reported_effects import HELD_OUT_ERROR
+from calibration.discovery.reported_effects import HELD_OUT_ERROR, WAVE_ORDER
 from calibration.formatting import listed, number, percent
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
@@ -26,6 +26,7 @@ MAX_DECAY_RESIDUAL = 0.1  # of a decay's motion, that a joint fit may leave
 MAX_RESIDUAL_RATIO = 3.0  # of a joint fit's residual to that of a fit to decays alone
 MAX_RELEASE_SPEED = 0.2  # of a decay's first sample, over release times natural frequency
 MEMORY_EFFECTS = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
+SQUARED_WAVE_EFFECTS = ("wave_drift", "wave_drift_damping", "drift_transfer", "slender_body_forces")
 # of the held-out error to that of the baseline. True effects increase it to 1.01 times at most in the campaigns of
 # docs/validation.md, since likelihoods are not errors
 MAX_HELD_OUT_RATIO = 1.05
@@ -111,7 +112,8 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
     Reasons, the later overriding the earlier:
 
     - a rejected effect explains more (`outdone_effects`);
-    - the held-out error rose, in all or in the effect's motion.
+    - the held-out error rose, in all or in the effect's motion;
+    - the effect goes with the square of the waves, and the wave records lack the second order that the model is driven with.
     """
     tried = {name: rejected.taken_out for name, rejected in search.rejected.items() if rejected.taken_out is not None}
     verdicts = {candidate.name: search.accepted[candidate.name].verdict for candidate in state.chosen}
@@ -119,6 +121,8 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
     every = held_out_error_rose(before.objective("holdout"), after.objective("holdout"))
     worse = [dof for dof in DOFS if held_out_error_rose(before.objective("holdout", dof), after.objective("holdout", dof))]
     doubted |= {candidate.name: HELD_OUT_ERROR for candidate in state.chosen if every or candidate.dof in worse}
+    if search.study.order_hint:
+        doubted |= {candidate.name: WAVE_ORDER for candidate in state.chosen if candidate.effect in SQUARED_WAVE_EFFECTS}
     return doubted
 
 

@@ -78,9 +78,11 @@ def study_of(
         cuts.append(rows)
     seas: list[SeaRecord] = []
     notes: list[str] = []
+    order_hint = ""
     if waving:
         step = sea_step(model, options)
         for run, made in seas_of(campaign, model.environment, options):
+            order_hint = order_hint or made.order_hint
             tests = [r for r in run.records if r.id in waving]
             if not tests:
                 continue
@@ -104,6 +106,7 @@ def study_of(
         tuple(cuts),
         options,
         tuple(notes),
+        order_hint,
     )
 
 

@@ -10,6 +10,8 @@ from calibration.result import Estimate
 HELD_OUT_ERROR = "held_out_error"
 # reason for doubt in an effect: its fitted size is at an end of its plausible range
 IMPLAUSIBLE_SIZE = "implausible_size"
+# reason for doubt in an effect: it goes with the square of the waves, whose second order the records lack
+WAVE_ORDER = "wave_order"
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +68,8 @@ class Effect:
         share: Fraction of the unexplained error of the fitted tests that it explains.
         indistinguishable: Effects that the records cannot tell from it.
         telling_test: The test that would tell them apart, or None.
-        in_doubt: A rejected effect that explains more beside it, `HELD_OUT_ERROR` or `IMPLAUSIBLE_SIZE`; None: no doubt.
+        in_doubt: A rejected effect that explains more beside it, `HELD_OUT_ERROR`, `IMPLAUSIBLE_SIZE` or `WAVE_ORDER`; None:
+            no doubt.
         plausible: Plausible ranges of its amplitudes by label.
     """
 

@@ -38,6 +38,7 @@ class Study:
         cuts: Rows of the decays and of every run in waves.
         options: How seas are reconstructed.
         notes: Remarks on the wave records, in words.
+        order_hint: Remark that the wave records lack the second-order waves of theory; also among the notes. Empty: none.
         expected: Expected size of rows (n,) over their floor (`expected_residuals`), or None.
         size_limits: Plausible steps from the start along every direction (d, 2), or None.
     """
@@ -55,6 +56,7 @@ class Study:
     cuts: tuple[FourierRows, ...]
     options: Options
     notes: tuple[str, ...] = ()
+    order_hint: str = ""
     expected: np.ndarray | None = None
     size_limits: np.ndarray | None = None
 

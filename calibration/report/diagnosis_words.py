@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from calibration.discovery.diagnosis import Outcome
 from calibration.discovery.effects.effect_names import capitalised, effect_in_words
-from calibration.discovery.reported_effects import HELD_OUT_ERROR, IMPLAUSIBLE_SIZE
+from calibration.discovery.reported_effects import HELD_OUT_ERROR, IMPLAUSIBLE_SIZE, WAVE_ORDER
 from calibration.formatting import listed, number, percent, quantity, quantity_range
 from calibration.results.calibration_file import Parameter
 from calibration.results.diagnosis_file import DiagnosisFile, Evidence, FoundEffect
@@ -12,8 +12,11 @@ from calibration.vocabulary import UNDETERMINED
 
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
 UNFINISHED = "The search did not come to its end: until then nothing was found that the model lacks."
+WAVES_FIRST = (
+    "The wave records lack the second-order waves that the model is driven with. State `records` in campaign.yaml (see the "
+    "notes), and diagnose again."
+)
 WHERE = "in the motion and at the frequencies where the error falls most"
-SECOND_ORDER = "second_order"  # a doubt in files of earlier versions, which chose the order of the waves themselves
 NEAR_ZERO_DEVIATIONS = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
 SMALL_DEVIATION = 0.25  # of the value it began from: a deviation below is small, whatever the value
 EVIDENCE_STRENGTHS = (
@@ -70,6 +73,14 @@ def validation_tests(saved: DiagnosisFile) -> str:
 
 def verdict_sentence(saved: DiagnosisFile) -> str:
     """The verdict of a diagnosis in one sentence, for a project manager."""
+    missing = saved.missing
+    if any(effect.in_doubt == WAVE_ORDER for effect in missing.effects):
+        return f"{WAVES_FIRST} {verdict_of_effects(saved)}"
+    return verdict_of_effects(saved)
+
+
+def verdict_of_effects(saved: DiagnosisFile) -> str:
+    """What the model lacks, in one sentence."""
     missing = saved.missing
     named = [(effect_in_words(effect.effect, effect.degree_of_freedom), effect.in_doubt is None) for effect in missing.effects]
     names, doubted = (listed([name for name, sure in named if sure is kind]) for kind in (True, False))
@@ -180,10 +191,10 @@ def describe_alternatives(effect: FoundEffect) -> str:
     """Other effects that it could be, and the test that would tell."""
     names = listed([effect_in_words(other) for other in effect.indistinguishable_from])
     text = f"These records cannot tell it from {names}." if names else ""
-    if effect.in_doubt == SECOND_ORDER:
+    if effect.in_doubt == WAVE_ORDER:
         text += (
-            " The second order of the waves, which the motions follow worse with, was left out (see the notes). It goes with "
-            "their square as well: this may stand for what acts in its place."
+            " The model is driven with the second-order waves of theory, and the wave records lack them. This effect goes with "
+            "the square of the waves as well, and may make up for them."
         )
     elif effect.in_doubt == HELD_OUT_ERROR:
         text += (

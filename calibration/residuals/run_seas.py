@@ -35,6 +35,7 @@ class RunSea:
         rounds: Number of iterations that separated the second order.
         inside: Fraction of the record's variance in the band.
         notes: Warnings, as sentences.
+        order_hint: Remark that the records lack the second-order waves of theory; also among the notes. Empty: none.
     """
 
     sea: IrregularSea
@@ -42,6 +43,7 @@ class RunSea:
     rounds: int
     inside: float
     notes: tuple[str, ...]
+    order_hint: str = ""
 
 
 Seas: TypeAlias = tuple[tuple[Run, RunSea], ...]
@@ -138,5 +140,6 @@ def seas_of(campaign: Campaign, environment: Environment, options: Options, seve
     made = [(run, sea_of(run, environment, options)) for run in campaign_runs]
     if made and options.order == 2 and not campaign.manifest.records.model_fields_set:
         hint = second_order_hint([(run, run_sea.sea) for run, run_sea in made], (options.low, options.cutoff))
-        made[0] = (made[0][0], dataclasses.replace(made[0][1], notes=(*made[0][1].notes, *hint)))
+        (run, first), rest = made[0], made[1:]
+        made = [(run, dataclasses.replace(first, notes=(*first.notes, *hint), order_hint=" ".join(hint))), *rest]
     return tuple(made)

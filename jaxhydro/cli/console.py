@@ -19,7 +19,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from rich.table import Table
 from rich.text import Text
 
-from jaxhydro.errors import CheckpointWarning
+from jaxhydro.errors import PrintedWarning
 from jaxhydro.interrupts import stop_if_asked
 
 PROGRESS_INTERVAL = 10.0  # s between lines of progress that go to a file
@@ -49,7 +49,7 @@ def warnings_told() -> Iterator[None]:
     shown, told = warnings.showwarning, set[str]()
 
     def show(message: Any, category: type[Warning], *where: Any) -> None:
-        if not issubclass(category, CheckpointWarning):
+        if not issubclass(category, PrintedWarning):
             shown(message, category, *where)
         elif str(message) not in told:
             told.add(str(message))

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 PlatformArgument = Annotated[
     str,
     typer.Argument(
-        help="A platform file, or a built-in name (see `jaxhydro platforms`).", autocompletion=options.platforms_like
+        help="A platform file, a built-in name (see `jaxhydro platforms`), or a campaign's folder, for its platform.",
+        autocompletion=options.platforms_like,
     ),
 ]
 
@@ -71,7 +72,7 @@ def simulate(
     --stretching, --diffraction, --cutoff, --calibration and --no-figures go with a campaign.
     """
     cli_options = sea_options.by_option(ctx.params)
-    if sea_options.is_campaign(platform):
+    if options.is_campaign(platform):
         campaign_file(platform)
         if formats:
             raise options.wrong("--format", "it goes with a platform; of a campaign all motions are in simulated.nc")
@@ -121,7 +122,7 @@ def statics(
 
     Nothing is written.
     """
-    options.check_platform(platform)
+    platform = options.platform_of(platform)
     forces = options.by_motion(force or [], "--force", "its force expected, as surge=1.5e6")
     offsets = options.releases(offset or [], "--offset")
     from jaxhydro.cli.statics_command import print_statics
@@ -158,7 +159,7 @@ def export(
     For OpenFAST 5: main.fst, and files of ElastoDyn, HydroDyn, SeaState (still water) and, for catenaries, MoorDyn. For RAFT:
     design.yaml. For MoorDyn 2: lines.txt, the catenary lines alone.
     """
-    options.check_platform(platform)
+    platform = options.platform_of(platform)
     from jaxhydro.cli.export_command import export_model
 
     export_model(platform, out, deck, calibration)

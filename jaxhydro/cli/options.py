@@ -8,7 +8,7 @@ import typer
 
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem, suggest, suggest_path
-from jaxhydro.files import YAML, check_folder, is_there
+from jaxhydro.files import MANIFEST, YAML, check_folder, embedded_campaigns, is_there
 from jaxhydro.platform.schema import builtin_platforms
 
 MAX_STEPS = 5_000_000  # samples or steps of one simulation
@@ -166,6 +166,28 @@ def check_platform(name: str, or_campaign: bool = False) -> None:
     file, known = "a platform file", f"a built-in platform ({', '.join(builtin)})"
     expected = f"{file}, {known}, or a campaign's folder" if or_campaign else f"{file} or {known}"
     raise InputError(name, [Problem("", expected, "no such file or folder", suggest(name, builtin) or suggest_path(name))])
+
+
+def is_campaign(name: str) -> bool:
+    """Whether the first argument is a campaign, not a platform."""
+    return Path(name).is_dir() or Path(name).name == MANIFEST or name in embedded_campaigns()
+
+
+def platform_of(name: str) -> str:
+    """The platform that an argument names: a built-in name, a platform file, or that of a campaign.
+
+    Args:
+        name: The argument: a platform, or a campaign's folder or file.
+
+    Raises:
+        InputError: There is no such platform or campaign, or the campaign's file has mistakes.
+    """
+    if not is_campaign(name):
+        check_platform(name, or_campaign=True)
+        return name
+    from calibration.campaign.manifest import platform_source, read_manifest
+
+    return platform_source(*read_manifest(name))
 
 
 def check_results(folder: Path) -> None:

@@ -11,7 +11,6 @@ from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.cli.options import finite, positive, wrong
 from jaxhydro.dynamics.requested_sea import Record, RequestedSea, usual_transient
 from jaxhydro.errors import InputError, Problem, suggest
-from jaxhydro.files import embedded_campaigns
 from jaxhydro.units import SI
 from jaxhydro.waves.recorded_waves import sampling_interval
 
@@ -58,11 +57,6 @@ def transient_of(sea: RequestedSea, duration: float, pace: float = 1.0) -> float
 def by_option(parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters of the command that are given, by the names of their options."""
     return {f"--{name.replace('_', '-')}": value for name, value in parameters.items() if value not in (None, (), [])}
-
-
-def is_campaign(name: str) -> bool:
-    """Whether the first argument is a campaign, not a platform."""
-    return Path(name).is_dir() or Path(name).name == "campaign.yaml" or name in embedded_campaigns()
 
 
 def of_campaign(options: Mapping[str, Any]) -> dict[str, Any]:

@@ -40,7 +40,7 @@ from calibration.discovery.gather import gather_sea
 from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
-from calibration.discovery.reported_effects import HELD_OUT_ERROR
+from calibration.discovery.reported_effects import HELD_OUT_ERROR, WAVE_ORDER
 from calibration.discovery.search import AcceptedEffect
 from calibration.discovery.selection.joint_search import JointSearch
 from calibration.discovery.selection.verified_search import VerifiedSearch
@@ -162,6 +162,7 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
         rejected=rejected,
         accepted={friction.name: SimpleNamespace(verdict=good)},
         setup=SimpleNamespace(candidates=[friction, drag, memory]),
+        study=SimpleNamespace(order_hint=""),
     )
     state: Any = SimpleNamespace(chosen=(friction,))
     assert doubted_effects(search, state, errors(), errors()) == {}  # type: ignore[arg-type]
@@ -179,6 +180,7 @@ def test_what_is_in_doubt_for_what_was_not_fitted():
         rejected={},
         accepted={one.name: SimpleNamespace(verdict=good) for one in (drift, friction)},
         setup=SimpleNamespace(candidates=[drift, friction]),
+        study=SimpleNamespace(order_hint=""),
     )
     state: Any = SimpleNamespace(chosen=(drift, friction))
     assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {}  # type: ignore[arg-type]
@@ -187,6 +189,8 @@ def test_what_is_in_doubt_for_what_was_not_fitted():
     assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), worse) == both  # type: ignore[arg-type]
     of_motion = doubted_effects(search, state, errors(surge=0.3, pitch=0.1), better)  # type: ignore[arg-type]
     assert of_motion == {drift.name: HELD_OUT_ERROR}
+    search.study.order_hint = "records have no second order"
+    assert doubted_effects(search, state, errors(), errors()) == {drift.name: WAVE_ORDER}  # type: ignore[arg-type]
 
 
 def test_a_decay_that_begins_in_motion_is_told_where_that_matters():

@@ -646,6 +646,14 @@ def test_broken_manifests(tmp_path, path, value, words):
     assert words in message and "campaign.yaml" in message, message
 
 
+def test_a_misspelt_channel_is_one_mistake(tmp_path):
+    """Not also a motion that is missing in every test."""
+    document = manifest()
+    document["channels"] = {"time": document["channels"]["time"], "sruge": document["channels"]["surge"]}
+    message = failure(load_campaign, write(tmp_path, document))
+    assert "channels.sruge" in message and "Did you mean 'surge'?" in message and "tests[0]" not in message
+
+
 def test_all_missing_files_are_told_at_once(tmp_path):
     document = manifest(platform="p.yaml")
     document["tests"] = [{**D2, "id": str(i), "file": f"{i}.csv"} for i in range(3)]

@@ -135,6 +135,11 @@ def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> 
         assert said in Page(write_report(tmp_path / verdict).read_text()).text
         raising = saved.missing.effects[-1].model_copy(update={"in_doubt": "held_out_error"})
         assert words.describe_alternatives(raising).startswith("With all that was found in the model, the tests that were not")
+        lacking = saved.missing.effects[-1].model_copy(update={"in_doubt": "wave_order"})
+        assert words.describe_alternatives(lacking).startswith("The model is driven with the second-order waves of theory")
+        unordered = saved.missing.model_copy(update={"effects": [*saved.missing.effects[:-1], lacking]})
+        verdict = words.verdict_sentence(saved.model_copy(update={"missing": unordered}))
+        assert verdict == f"{words.WAVES_FIRST} {words.verdict_sentence(saved)}"
         if other in effects:
             assert words.describe_alternatives(saved.missing.effects[0]).startswith(
                 "No other effect that was tried does as well."

@@ -66,7 +66,7 @@ def with_records(folder: Path, **stated):
 
 @pytest.mark.parametrize("stated", [{}, {"order": 1}, {"order": 2}, {"kinds": ["sum", "difference"]}])
 def test_records_are_looked_at_where_nothing_is_stated(stated, monkeypatch):
-    """The hint is with the first run's notes."""
+    """The hint is with the first run's notes, and by itself."""
     looked = []
     monkeypatch.setattr(
         "calibration.residuals.run_seas.second_order_hint", lambda runs, band: looked.append(band) or ("a hint",)
@@ -74,6 +74,7 @@ def test_records_are_looked_at_where_nothing_is_stated(stated, monkeypatch):
     campaign = with_records(COMPLETE, **stated)
     ((_, made),) = seas_of(campaign, campaign.model.environment, options_of(campaign))
     assert looked == ([] if stated else [(0.03, 0.3)]) and ("a hint" in made.notes) is not bool(stated)
+    assert made.order_hint == ("" if stated else "a hint")
 
 
 def test_seas_are_made_as_stated(tmp_path):

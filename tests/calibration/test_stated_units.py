@@ -98,7 +98,7 @@ def test_a_file_that_states_another_unit(tmp_path, column, unit, size, words):
     ("scale", "period", "words"),
     [
         (4.0, 1.0, None),
-        (4.0, 2.0, "longer by the square root of `scale`, 2. Are the records at full scale already?"),
+        (4.0, 2.0, "longer by the square root of `scale`, 2. If records and platform file are at one scale"),
         (4.0, 0.5, "shorter by the square root of `scale`, 2. Were times scaled down before?"),
         (1.0, 0.25, "a `scale` of about 64"),
         (1.0, 2.0, None),

@@ -13,9 +13,11 @@ from typer.testing import CliRunner
 
 import jaxhydro as jh
 from jaxhydro.cli import app as cli
+from jaxhydro.cli.options import platform_of
 from jaxhydro.dynamics.rest_remarks import rest_remarks, wave_remarks
 from jaxhydro.dynamics.static_forces import forces_by_load, line_states, offset_curve
 from jaxhydro.dynamics.statics import equilibrium, linearised
+from jaxhydro.files import embedded_campaigns
 from jaxhydro.loads.static_force import StaticForce
 
 
@@ -120,3 +122,12 @@ def test_units_suit_the_platform(tmp_path: Path) -> None:
     assert status == 0 and "Stiffness at rest (N/m, N, N m)" in small and "heave (kN)" in small and "roll (N m)" in small
     assert " roll 0 0 0 822 0 0 " in small
     assert "Stiffness at rest (MN/m, MN, MN m)" in statics("volturnus-s")[1]
+
+
+def test_a_campaign_stands_for_its_platform(tmp_path: Path) -> None:
+    """By its folder, its file or its name; a folder without a campaign is told."""
+    folder = embedded_campaigns()["volturnus-s-decays"]
+    assert {platform_of(str(one)) for one in (folder, folder / "campaign.yaml", folder.name)} == {str(folder / "platform.yaml")}
+    assert platform_of("oc3-hywind") == "oc3-hywind"
+    code, text = statics(str(tmp_path))
+    assert code == 2 and "a folder without campaign.yaml" in text
