@@ -18,6 +18,7 @@ from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import DecayProblem, crossing_period, gather_decays
 from calibration.residuals.moving_channels import moving_channels
+from calibration.residuals.padded_sizes import padded_size
 from calibration.residuals.run_seas import sea_step, seas_of
 from calibration.residuals.run_segments import samples_after_transient
 from calibration.residuals.wave_options import Options
@@ -105,6 +106,7 @@ def study_of(
         own_width,
         tuple(cuts),
         options,
+        (0, 0) if decays is None else (padded_size(decays.data.time.shape[1]), decays.data.capacity),
         tuple(notes),
         order_hint,
     )

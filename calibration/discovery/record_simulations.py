@@ -7,6 +7,7 @@ from functools import cached_property, reduce
 from itertools import islice
 from typing import Any, TypeAlias
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -16,7 +17,7 @@ from calibration.discovery.linearisations import Linearisation, Point, SeaSelect
 from calibration.discovery.residuals import Frame, SeaRecord, decay_residual, decay_slopes, sea_residuals
 from calibration.discovery.sea_slopes import COMPARED_AT_ONCE, Accelerations, sea_slopes
 from calibration.fitting.cores import cores
-from calibration.residuals.decays import DecayData, DecayProblem
+from calibration.residuals.decays import DecayData, DecayProblem, padded
 from jaxhydro.interrupts import stoppable_threads
 
 OVERFLOW = 1e100  # motions and slopes from here on are those of a diverging simulation
@@ -32,6 +33,7 @@ class RecordSimulations:
 
     Attributes:
         decays: The decays, or None.
+        decay_size: Numbers of samples and of steps that decays are padded to, so that studies share programs.
         seas: The runs in waves.
         with_fitted: Which runs have a fitted test.
         cuts: Rows of the decays and of every run in waves.
@@ -40,6 +42,7 @@ class RecordSimulations:
     """
 
     decays: DecayProblem | None
+    decay_size: tuple[int, int]
     seas: tuple[SeaRecord, ...]
     with_fitted: tuple[bool, ...]
     cuts: tuple[FourierRows, ...]
@@ -48,11 +51,40 @@ class RecordSimulations:
 
     @cached_property
     def decay_data(self) -> list[DecayData]:
-        """The decays one by one."""
+        """The decays one by one, padded."""
         if self.decays is None:
             return []
-        leaves, kind = jax.tree.flatten(self.decays.data)
+        samples, steps = self.decay_size
+        leaves, kind = jax.tree.flatten(padded(self.decays.data, samples, steps))
         return [jax.tree.unflatten(kind, decay) for decay in zip(*leaves, strict=True)]
+
+    def of_decay(self, program: Callable[..., Any], where: Any, own: np.ndarray, i: int) -> Any:
+        """Result of a program of a decay, without the padding.
+
+        Args:
+            program: `decay_residual` or `decay_slopes`.
+            where: Its point or frame.
+            own: Own unknowns of the decay (o,).
+            i: Number of the decay.
+        """
+        assert self.decays is not None
+        no_records = eqx.tree_at(lambda problem: problem.data, self.decays, None)  # one program, however many records
+        result = program(no_records, where, jnp.asarray(own), self.decay_data[i])
+        samples = self.decays.data.time.shape[1]
+        return jax.tree.map(lambda array: np.asarray(array)[:, :samples], result)
+
+    def compile_decays(self, x: np.ndarray) -> None:
+        """Compile the programs of decays, unless they are; for a thread beside other work.
+
+        Args:
+            x: Any parameter coordinates (p,).
+        """
+        if self.decays is None:
+            return
+        where, own = jnp.asarray(x), np.zeros(3 * len(self.decays.data.dofs))
+        frame = Frame(where, jnp.zeros((len(x), self.width)))
+        for program, at in ((decay_residual, where), (decay_slopes, frame)):
+            self.of_decay(program.prepare, at, own, 0)
 
     def motions(self, point: Point, seas: SeaSelection) -> list[np.ndarray | None]:
         """Simulated minus measured motions in time.
@@ -63,8 +95,7 @@ class RecordSimulations:
         x = jnp.asarray(point.x)
 
         def of_decay(i: int) -> np.ndarray:
-            assert self.decays is not None
-            return np.asarray(decay_residual(self.decays, x, jnp.asarray(point.own[i]), self.decay_data[i]))
+            return np.asarray(self.of_decay(decay_residual, x, point.own[i], i))
 
         def of_sea(record: SeaRecord) -> np.ndarray:
             motions = np.asarray(sea_residuals(record, x, jnp.asarray(_step_count(record, seas))))
@@ -185,8 +216,7 @@ class RecordSimulations:
             return residual.reshape(-1, residual.shape[-1]), slopes.reshape(-1, *slopes.shape[-2:])
 
         def of_decay(i: int) -> tuple[np.ndarray, np.ndarray]:
-            assert self.decays is not None
-            return flat(decay_slopes(self.decays, frame, jnp.asarray(point.own[i]), self.decay_data[i]))
+            return flat(self.of_decay(decay_slopes, frame, point.own[i], i))
 
         def of_sea(record: SeaRecord) -> tuple[np.ndarray, np.ndarray]:
             received = None if keep is None else keep.setdefault(record.tests, [])

@@ -14,6 +14,7 @@ from calibration.discovery.eliminated_least_squares import predict_gain, prior_r
 from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.refusal import Refusal
 from calibration.discovery.set_up import StudySetup
+from jaxhydro.interrupts import stoppable_threads
 
 MASS_DEVIATIONS_ALLOWED = 2.0  # standard deviations by which weighed mass properties may be off
 
@@ -78,7 +79,9 @@ class Search(EffectFits):
     def fit_baseline(self) -> FitState:
         """Fit the baseline."""
         self.say("fitting the baseline", 0.03)
-        point = self.start
+        with stoppable_threads(1) as beside:
+            beside.submit(self.study.simulations.compile_decays, self.begun)
+            point = self.start
         self.anchor(point.x)
         if self.study.decays is not None and self.study.seas:
             self.alone = ResidualSummary.of(self.study, self.study.residual(point))

@@ -37,6 +37,7 @@ class Study:
         own_width: Standard deviations of the decays' own unknowns (r, o).
         cuts: Rows of the decays and of every run in waves.
         options: How seas are reconstructed.
+        decay_size: Numbers of samples and of steps that decays are padded to; those of the whole records in every study.
         notes: Remarks on the wave records, in words.
         order_hint: Remark that the wave records lack the second-order waves of theory; also among the notes. Empty: none.
         expected: Expected size of rows (n,) over their floor (`expected_residuals`), or None.
@@ -55,6 +56,7 @@ class Study:
     own_width: np.ndarray
     cuts: tuple[FourierRows, ...]
     options: Options
+    decay_size: tuple[int, int]
     notes: tuple[str, ...] = ()
     order_hint: str = ""
     expected: np.ndarray | None = None
@@ -208,7 +210,7 @@ class Study:
         """Simulations of the records."""
         uses = {series.test: series.use for series in self.series}
         with_fitted = tuple(any(uses[test] == "fit" for test in record.tests) for record in self.seas)
-        return RecordSimulations(self.decays, self.seas, with_fitted, self.cuts, self.directions, self.width)
+        return RecordSimulations(self.decays, self.decay_size, self.seas, with_fitted, self.cuts, self.directions, self.width)
 
     def motions(self, point: Point, seas: SeaSelection = "all") -> list[np.ndarray | None]:
         """Simulated minus measured motions in time (s, t), of the decays and of every run in waves."""

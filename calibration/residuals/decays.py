@@ -5,6 +5,7 @@ all records share. A record's own unknowns are initial position, initial rate an
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import equinox as eqx
@@ -75,6 +76,14 @@ def gather_decays(records: Sequence[Record], model: Model, step: float, exact: b
     names = ("time", "measured", "present", "step", "count", "unit", "pace", "until")
     fields: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
     return DecayData(**fields, capacity=capacity, dofs=tuple(DOFS.index(channel) for channel in channels))
+
+
+def padded(data: DecayData, samples: int, steps: int) -> DecayData:
+    """The same records in arrays of more samples, with room for more steps; results have rows of zeros for them."""
+    more = ((0, 0), (0, samples - data.time.shape[1]))
+    measured, present = (np.pad(np.asarray(part), ((0, 0), *more)) for part in (data.measured, data.present))
+    time = np.pad(np.asarray(data.time), more, mode="edge")
+    return replace(data, time=jnp.asarray(time), measured=jnp.asarray(measured), present=jnp.asarray(present), capacity=steps)
 
 
 def crossing_period(record: Record) -> float:

@@ -8,9 +8,14 @@ import pytest
 
 from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
+from calibration.discovery.held_out_blocks import study_in_blocks
+from calibration.discovery.linearisations import Point
+from calibration.discovery.residuals import decay_residual
+from calibration.discovery.set_up import set_up_study
 from calibration.fitting.decay_fit import prepare_fit
-from calibration.residuals.decays import DecayProblem
+from calibration.residuals.decays import DecayProblem, first_guess
 from calibration.residuals.padded_sizes import padded_size
+from calibration.residuals.wave_options import Options
 
 DECAYS = "jaxhydro/campaigns/volturnus-s-decays"
 
@@ -75,3 +80,22 @@ def test_padding_changes_no_result(campaign, monkeypatch) -> None:
     scale = np.sqrt(np.einsum("rckk->rck", expected))
     limit = 1e-12 * scale[..., :, None] * scale[..., None, :] + 1e-300
     assert (np.abs(found - expected) <= limit).all()
+
+
+@pytest.mark.slow
+def test_blocks_of_decays_take_the_programs_of_whole_decays(campaign) -> None:
+    """Padded to their size, which changes no result."""
+    ids = (next(record.id for record in campaign.records if record.degree_of_freedom == "heave"),)
+    study = set_up_study(cut(campaign, 0.37, ids), Options(), ()).study
+    blocks, _ = study_in_blocks(study, campaign.records)
+    assert len(blocks.decay_records) > len(study.decay_records) == 1
+    compiled = []
+    for one in (study, blocks):
+        own = first_guess(one.decay_records, one.decays.data)
+        (motions,) = one.motions(Point(np.asarray(one.space.start), np.asarray(own)))
+        expected = one.decays.residual(one.space.start, own[0], one.simulations.decay_data[0])
+        channels, samples = len(one.decays.data.dofs), one.decays.data.time.shape[1]
+        np.testing.assert_allclose(motions[:channels], expected[:, :samples], atol=1e-12)
+        assert not np.any(expected[:, samples:])
+        compiled.append(len(decay_residual._compiled))
+    assert compiled[0] == compiled[1]
