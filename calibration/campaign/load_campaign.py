@@ -16,7 +16,7 @@ from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.campaign.plausible import CampaignFinding, check_plausible, restoring_findings
 from calibration.campaign.records import Record, records_of
 from calibration.campaign.series import read_series
-from calibration.campaign.table_findings import check_tables, platform_findings
+from calibration.campaign.table_findings import built_in_findings, check_tables, platform_findings
 from calibration.campaign.wave_band import wave_band
 from calibration.formatting import listed
 from jaxhydro.choices import unknown
@@ -206,7 +206,8 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
         raise InputError(source, [Problem(manifest.platform, expected, str(error), hint)]) from None
     band = wave_band(manifest, model, records)
     doubtful = (*restoring_findings(records, platform), *doubtful)
-    doubtful = (*platform_findings(model, manifest.platform), *check_tables(records, model, band), *doubtful)
+    copied = built_in_findings(platform_source(manifest, folder), manifest.platform)
+    doubtful = (*copied, *platform_findings(model, manifest.platform), *check_tables(records, model, band), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
         raise InputError(source, [*(finding.problem for finding in doubtful if isinstance(finding, CampaignFinding)), *grave])
     return replace(campaign, findings=(*findings, *doubtful))

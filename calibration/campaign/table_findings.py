@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from calibration.campaign.records import Record
 from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.table_ranges import TableRange, table_ranges
+from jaxhydro.platform.schema import builtin_platforms, builtin_text
 
 
 class PlatformFinding(Finding):
@@ -25,6 +27,22 @@ def platform_findings(model: Model, file: str) -> tuple[Finding, ...]:
     """The remarks on the files that a platform was read from, warnings first."""
     told = sorted(model.remarks, key=lambda remark: not remark.warning)
     return tuple(PlatformFinding("warning", file, "", "", None, remark.text) for remark in told)
+
+
+def built_in_findings(source: str, file: str) -> tuple[Finding, ...]:
+    """Warning where a platform file is still the built-in one that `init` copied.
+
+    Args:
+        source: Argument of `load_platform`: a path or a built-in name.
+        file: The platform file's name in the manifest.
+    """
+    path = Path(source)
+    if not path.is_file():
+        return ()
+    text = path.read_text(encoding="utf-8-sig")
+    name = next((name for name in builtin_platforms() if builtin_text(name) == text), None)
+    message = f"still the built-in platform {name}: put your platform in. Until then, results are of that hull"
+    return () if name is None else (PlatformFinding("warning", file, "", "", None, message),)
 
 
 def check_tables(records: Sequence[Record], model: Model, band: tuple[float, float]) -> tuple[Finding, ...]:

@@ -16,7 +16,6 @@ from calibration.vocabulary import KINDS, USE, Rows
 from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.natural_modes import Modes
 from jaxhydro.dynamics.statics import equilibrium
-from jaxhydro.platform.schema import builtin_platforms, builtin_text
 from jaxhydro.units import unit_of
 
 MAX_HEAVE = 0.02  # of the draught: a platform that rests further off is not in balance as declared
@@ -104,10 +103,6 @@ def periods(compared: Sequence[PeriodComparison]) -> Rows:
 
 def doubts(campaign: Campaign, compared: Sequence[PeriodComparison]) -> Iterator[str]:
     """What to look at before a fit, in sentences."""
-    platform_file = campaign.folder / campaign.manifest.platform
-    for name in builtin_platforms() if platform_file.is_file() else ():
-        if platform_file.read_text(encoding="utf-8") == builtin_text(name):
-            yield f"{campaign.manifest.platform} is still the built-in {name}: put your platform in"
     warnings = len(group_findings(campaign.findings))
     if warnings:
         yield f"{counted(warnings, 'warning')} above"

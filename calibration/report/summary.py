@@ -12,6 +12,7 @@ KINDS = {"decay": "decay", "regular": "test", "irregular": "test"}
 WAVES_PHRASES = {"regular": " in regular waves", "irregular": " in irregular waves"}
 BANDS = {"low_frequency": "low-frequency", "wave_frequency": "wave-frequency"}
 FAR_OFF_ERROR = 1.0  # relative error of the energy in a band beyond which a test in waves is not followed
+MAX_HALF_WIDTHS = 1.5  # of a 95 % interval (3 standard deviations): a simulated value beyond is no chance
 MAX_NAMED = 3  # tests or coefficients that a sentence names; of more it says how many
 Bands = Mapping[str, Mapping[str, tuple[float | None, float]]]
 
@@ -49,6 +50,7 @@ class CalibrationSummary(NamedTuple):
         determined: Coefficients that the records determine.
         undetermined: Coefficients that they do not determine.
         at_bound: Coefficients that are at a bound.
+        damping_outside: Fitted decays whose simulated damping is far outside the measured interval.
     """
 
     converged: bool
@@ -58,6 +60,7 @@ class CalibrationSummary(NamedTuple):
     determined: tuple[str, ...]
     undetermined: tuple[str, ...]
     at_bound: tuple[str, ...]
+    damping_outside: tuple[str, ...] = ()
 
     @property
     def sound(self) -> bool:
@@ -88,7 +91,23 @@ def summary_of(saved: CalibrationFile) -> CalibrationSummary:
     )
     parameters = saved.baseline.parameters
     determined = tuple(label for label, parameter in parameters.items() if _is_determined(parameter))
-    return CalibrationSummary(saved.baseline.converged, lost, far, agreements, determined, *_others(parameters, determined))
+    outside = tuple(id for id in damping_far_outside(saved) if saved.tests[id].use == "fit")
+    others = _others(parameters, determined)
+    return CalibrationSummary(saved.baseline.converged, lost, far, agreements, determined, *others, outside)
+
+
+def damping_far_outside(saved: CalibrationFile) -> dict[str, list[str]]:
+    """Decays whose simulated linear (p) or quadratic (q) damping is far outside the measured interval, with these terms."""
+    outside = {}
+    for id, about in saved.tests.items():
+        if (both := about.linear_quadratic) is not None:
+            terms = {"p": both.linear, "q": both.quadratic}
+            far = [
+                name for name, term in terms.items() if abs(term.simulated - term.measured) > MAX_HALF_WIDTHS * term.half_width
+            ]
+            if far:
+                outside[id] = far
+    return outside
 
 
 def _is_determined(parameter: Parameter) -> bool:
@@ -135,9 +154,10 @@ def calibration_sentence(summary: CalibrationSummary) -> str:
     # bands make clauses long: they are sentences of their own
     apart = any(agreement.bands for agreement in followed)
     sentences = [f"{part}." for part in parts] if apart or not parts else [f"{'; '.join(parts)}."]
-    return " ".join(
-        [*_failures(summary), *(re.sub("^(all|no) ", lambda word: word[0].capitalize(), sentence) for sentence in sentences)]
-    )
+    capitalised = [re.sub("^(all|no) ", lambda word: word[0].capitalize(), sentence) for sentence in sentences]
+    if summary.damping_outside and not lost:
+        capitalised.append(f"The damping of {_named(summary.damping_outside, 'decay')} is far outside the measured interval.")
+    return " ".join([*_failures(summary), *capitalised])
 
 
 def _failures(summary: CalibrationSummary) -> Iterator[str]:

@@ -9,12 +9,12 @@ from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.formatting import bracketed, counted, listed, number, percent, readable_unit, signed_percent, with_deviation
+from calibration.report.summary import damping_far_outside
 from calibration.result import Calibration
 from calibration.results.calibration_file import CalibrationFile, ChannelError, Parameter
 from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 
 CLASSICAL = "Classical (P-Q) analysis of the decays: x'' + p x' + q x'|x'| + w² x = 0"
-MAX_HALF_WIDTHS = 1.5  # of a 95 % interval (3 standard deviations): a simulated value beyond is no chance
 MAX_NAMED_DECAYS = 3
 AGREEMENT_DEVIATIONS = 2.0  # standard deviations within which a value agrees with the true one
 
@@ -113,14 +113,7 @@ def damping_outside(saved: CalibrationFile) -> str:
     Returns:
         The sentences; "" where there is no such decay.
     """
-    outside = []
-    for id, about in saved.tests.items():
-        if (both := about.linear_quadratic) is not None:
-            terms = {"p": both.linear, "q": both.quadratic}
-            far = [
-                name for name, term in terms.items() if abs(term.simulated - term.measured) > MAX_HALF_WIDTHS * term.half_width
-            ]
-            outside += [f"{' and '.join(far)} of {id}"] if far else []
+    outside = [f"{' and '.join(terms)} of {id}" for id, terms in damping_far_outside(saved).items()]
     if not outside:
         return ""
     more = len(outside) - MAX_NAMED_DECAYS

@@ -189,6 +189,8 @@ def test_damping_far_outside_its_interval_is_named() -> None:
     far = content | {"tests": {"a": decay(1.16, 0.8), "b": decay(1.0, 2.0)}}
     said = tables.damping_outside(CalibrationFile.model_validate(far))
     assert said.startswith("Far outside the measured interval: p and q of a and q of b.") and "jaxhydro diagnose" in said
+    ends = "The damping of a and b is far outside the measured interval."
+    assert calibration_sentence(summary_of(CalibrationFile.model_validate(far))).endswith(ends)
 
 
 # --- the truth
