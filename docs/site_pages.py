@@ -27,9 +27,12 @@ TOCTREES = {  # of the page before the colon; they are appended to it, so that n
         *("calibrate", "waves", "diagnose", "diagnose-results", "sweeps"),
         *("uncertainty", "python", "convert", "own-effect", "../formats"),
     ),
-    "reference/index": ("../theory", "../conventions", "../constants", "commands", "python/index", "../glossary"),
+    "reference/index": (
+        *("../theory", "../conventions", "../comparison", "../constants"),
+        *("commands", "python/index", "../glossary"),
+    ),
     "verified": ("validation", "speed", "discovery-benchmark"),
-    "project": ("contributing", "architecture", "comparison", "changelog"),
+    "project": ("contributing", "architecture", "changelog"),
 }
 SITE_LINKS = {  # in the page of the key; to pages that only the site has
     "reference/index": {"all commands": "commands.md", "all public names of Python": "python/index.rst"},
