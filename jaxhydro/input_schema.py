@@ -150,7 +150,9 @@ def _told(detail: Any, location: SchemaLocation) -> Iterator[Problem]:
         key = detail["loc"][-1]
         yield Problem(location.where, f"a known key ({', '.join(location.keys)})", shown(key), suggest(key, location.keys))
     elif "[key]" in detail["loc"]:
-        yield Problem(location.where, "a key that is text", shown(detail["loc"][-2]), "Put it in quotes.")
+        key = detail["loc"][-2]
+        comma = f" Or is it a decimal comma? Numbers have a point: 5.{key}, not 5,{key}." if isinstance(key, int) else ""
+        yield Problem(location.where, "a key that is text", shown(key), f"Put it in quotes.{comma}")
     elif detail["type"].startswith("union_tag") and isinstance(location.value, dict):
         key = detail["ctx"]["discriminator"].strip("'")
         tags = [str(tag) for arm in arms_of(bare(location.kind, location.notes)[0]) for tag in tags_of(arm)]

@@ -44,4 +44,7 @@ def check_campaign(path: Path, out: Path | None) -> None:
     say(check_tables.verdict(campaign, doubts))
     if doubts:
         say(f"To look again: jaxhydro check {shlex.quote(str(path))}")
-    say(f"To fit it: jaxhydro calibrate {shlex.quote(str(path))} --out fit")
+    if any(record.use == "fit" for record in campaign.records):
+        say(f"To fit it: jaxhydro calibrate {shlex.quote(str(path))} --out fit")
+    else:
+        say("Nothing to fit: mark tests `use: fit` in campaign.yaml")

@@ -143,7 +143,7 @@ Calibrated = Annotated[
     typer.Option(
         "--calibration",
         help="A calibration.json or diagnosis.json, or its folder. Its values, effects and strip conventions are used. For its "
-        "own campaign, waves are made as there, too.",
+        "own campaign, its wave options are used, too.",
     ),
 ]
 Step = Annotated[float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")]

@@ -3,6 +3,7 @@
 Each command imports what it needs.
 """
 
+import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -42,7 +43,8 @@ def init(
         ),
     ] = "volturnus-s",
     scale: Annotated[
-        float | None, typer.Option(help="Froude length scale of the records: 70 for a model at 1:70.", show_default="1")
+        str | None,
+        typer.Option(help="Froude length scale of the records: 70, or 1:70, for a model at 1:70.", show_default="1"),
     ] = None,
 ) -> None:
     """Make a campaign folder: platform.yaml, a commented campaign.yaml, and your data files.
@@ -50,12 +52,22 @@ def init(
     Columns, units, kinds of tests and released motions are guessed from the data files. Each guess is marked CHECK in
     campaign.yaml. Without data files, campaign.yaml is an example to edit.
     """
-    if scale is not None and not 1 <= scale <= MAX_SCALE:
-        expected = f"full-scale length over model length, 1 to {MAX_SCALE:g}: 70 for 1:70"
-        raise options.wrong("--scale", f"{expected} expected; found {scale:g}")
+    froude = None if scale is None else _length_scale(scale)
     from calibration.commands.init_command import init_campaign
 
-    init_campaign(folder, platform, scale, files or [])
+    init_campaign(folder, platform, froude, files or [])
+
+
+def _length_scale(text: str) -> float:
+    """Froude length scale of an option: 70 of "70" or "1:70"."""
+    try:
+        scale = float(text.removeprefix("1:"))
+    except ValueError:
+        scale = math.nan
+    if not 1 <= scale <= MAX_SCALE:
+        expected = f"full-scale length over model length, 1 to {MAX_SCALE:g}: 70 or 1:70"
+        raise options.wrong("--scale", f"{expected} expected; found {text}")
+    return scale
 
 
 def check(

@@ -16,7 +16,7 @@ from jaxhydro.cli.console import complain, say, table
 from jaxhydro.cli.simulation_files import Motion, write_motion
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.natural_modes import Modes
-from jaxhydro.dynamics.rest_remarks import rest_remarks, wave_remarks
+from jaxhydro.dynamics.rest_remarks import rest_remarks, restoring_remarks, wave_remarks
 from jaxhydro.dynamics.simulate import free_decay
 from jaxhydro.dynamics.statics import equilibrium, stable_modes
 from jaxhydro.dynamics.table_ranges import regular_fault
@@ -229,7 +229,7 @@ def print_rest(model: Model, platform: str, moved: Collection[str] = DOFS) -> Mo
     Raises EquilibriumError where it does not stay there once it is `moved`.
     """
     rest, modes = np.asarray(equilibrium(model)), stable_modes(model, moved)
-    print_remarks(rest_remarks(model, jnp.asarray(rest)))
+    print_remarks([*rest_remarks(model, jnp.asarray(rest)), *restoring_remarks(model, jnp.asarray(rest))])
     if modes.unstable:
         complain(f"warning: the platform is unstable in {' and '.join(modes.unstable)}, which nothing moves here")
     print_position(f"{platform}: at rest", rest)

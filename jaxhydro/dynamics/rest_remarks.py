@@ -8,12 +8,14 @@ from jaxtyping import Array, Float
 
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.static_forces import forces_by_load
+from jaxhydro.dynamics.statics import linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.wave_drift import WaveDrift
 from jaxhydro.remarks import Remark
 
 MAX_REST_HEAVE = 0.1  # of the draught: heave at rest from which the platform does not rest as it was drawn
 MAX_REST_TILT = math.radians(3.0)
+NO_STIFFNESS = 1e-9  # over the weight, per m or times m: a smaller stiffness is none
 
 
 def rest_remarks(model: Model, rest: Float[Array, "6"]) -> list[Remark]:
@@ -37,6 +39,28 @@ def rest_remarks(model: Model, rest: Float[Array, "6"]) -> list[Remark]:
             text = f"the platform rests with a {DOFS[i]} of {angle:.3g} deg: check centre of mass and ballast"
             remarks.append(Remark(text, warning=True))
     return remarks
+
+
+def restoring_remarks(model: Model, rest: Float[Array, "6"]) -> list[Remark]:
+    """Remark on motions that only the weight restores, or nothing, where the platform has no members.
+
+    Args:
+        model: The platform.
+        rest: Position of rest (m, rad), (6,).
+    """
+    if model.hull.strips.element:
+        return []
+    stiffness = np.diagonal(np.asarray(linearised(model, rest)[1]))
+    weight = float(model.body.mass * model.environment.gravity)
+    of_weight = -weight * float(model.body.centre[2])
+    others = {"heave": stiffness[2], "roll": stiffness[3] - of_weight, "pitch": stiffness[4] - of_weight}
+    bare = [name for name, other in others.items() if abs(other) <= NO_STIFFNESS * weight]
+    if not bare:
+        return []
+    keys = {"heave": "C33", "roll": "C44", "pitch": "C55"}
+    missing = " or ".join(keys[name] for name in bare)
+    text = f"buoyancy does not restore {' and '.join(bare)}: the platform file has no members and no {missing}"
+    return [Remark(text, warning=True)]
 
 
 def wave_remarks(model: Model) -> list[Remark]:

@@ -96,9 +96,10 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
                 for i in torn[:_SHOWN]
             ],
         )
-    misfit = wrong(
-        path, "header", f"{width} names, one for each column", f"{len(stated or ())}: " + ", ".join((stated or [])[:10])
-    )
+    commas = parts.delimiter == "," and width == 2 * len(stated or ())
+    hint = "If numbers have decimal commas, columns have to be separated by semicolons or tabs." if commas else ""
+    found = f"{len(stated or ())}: " + ", ".join((stated or [])[:10])
+    misfit = wrong(path, "header", f"{width} names, one for each column", found, hint)
     if parts.misfit is not None or len(parts.names or ()) > width:
         raise misfit
     names = [str(i) for i in range(width)] if parts.names is None else parts.names

@@ -165,7 +165,7 @@ def test_names_are_written_as_yaml(value: str | int, text: str) -> None:
 
 def test_the_example_is_read_once_its_records_are_there(tmp_path: Path) -> None:
     folder = tmp_path / "new"
-    text = run("init", folder, "--scale", 70)
+    text = run("init", folder, "--scale", "1:70")
     assert "is ready for your records" in text and f"jaxhydro check {folder}" in text
     with pytest.raises(InputError, match=re.escape("no such file: 'surge-1.csv'")):
         load_campaign(folder)
@@ -318,6 +318,7 @@ def test_what_is_refused_leaves_nothing(tmp_path: Path) -> None:
         (["new", "good.csv", "other/good.csv"], "expected files of different names"),
         (["new", "--platform", "volturn"], "Did you mean 'volturnus-s'"),
         (["new", "--scale", "0"], "full-scale length over model length"),
+        (["new", "--scale", "70:1"], "70 or 1:70 expected; found 70:1"),
     ):
         paths = [str(tmp_path / word) if word.endswith(".csv") or word in ("full", "new") else word for word in words]
         assert said in run("init", *paths, status=2)

@@ -121,6 +121,8 @@ def test_units_suit_the_platform(tmp_path: Path) -> None:
     status, small = statics(str(ship))
     assert status == 0 and "Stiffness at rest (N/m, N, N m)" in small and "heave (kN)" in small and "roll (N m)" in small
     assert " roll 0 0 0 822 0 0 " in small
+    assert "buoyancy does not restore heave and pitch: the platform file has no members and no C33 or C55" in small
+    assert "does not restore" not in statics("volturnus-s")[1]
     assert "Stiffness at rest (MN/m, MN, MN m)" in statics("volturnus-s")[1]
 
 

@@ -95,6 +95,11 @@ def test_a_header_that_does_not_fit(tmp_path, top, told):
     assert told in refused(tmp_path, top + rows("  "))
 
 
+def test_decimal_commas_between_commas_are_guessed(tmp_path):
+    told = refused(tmp_path, ["Time,Surge", "0,0,1,5", "0,1,1,4", "0,2,1,3"])
+    assert "expected 4 names, one for each column, found 2: Time, Surge. If numbers have decimal commas" in told
+
+
 @pytest.mark.parametrize("delimiter", DELIMITERS, ids=["comma", "semicolon", "tab", "spaces"])
 @pytest.mark.parametrize("at", [0, 1, COUNT // 2, COUNT - 1])
 @pytest.mark.parametrize(
