@@ -23,6 +23,7 @@ from jaxhydro.errors import PrintedWarning
 from jaxhydro.interrupts import stop_if_asked
 
 PROGRESS_INTERVAL = 10.0  # s between lines of progress that go to a file
+MIN_ESTIMATED = 0.15  # fraction done from which the time left is told: before, it is mostly compilation
 WIDTH = 120  # where there is no terminal to ask
 WIDE_GAP, NARROW_GAP = 3, 2  # characters between the columns of a table
 
@@ -124,7 +125,7 @@ def progress() -> Iterator[Callable[[Any], None]]:
     def left(fraction: float) -> str:
         """Time left, from the time gone and the fraction done."""
         gone = clock.monotonic() - begun
-        if gone < PROGRESS_INTERVAL or not 0 < fraction < 1:
+        if gone < PROGRESS_INTERVAL or not MIN_ESTIMATED <= fraction < 1:
             return ""
         return f"about {_span(gone * (1 - fraction) / fraction)} left"
 
