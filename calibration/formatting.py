@@ -129,9 +129,16 @@ def quantity(value: float, deviation: float | None, unit: str) -> str:
     return f"{text} {unit}".strip()
 
 
-def quantity_range(lower: float, upper: float, unit: str) -> str:
-    """A range in a unit that people read: `0 to 81.0 kN`, degrees for radians."""
-    factor, unit = _readable(max(abs(lower), abs(upper)), unit)
+def quantity_range(lower: float, upper: float, unit: str, beside: float | None = None) -> str:
+    """A range in a unit that people read: `0 to 81.0 kN`, degrees for radians.
+
+    Args:
+        lower: Lower end.
+        upper: Upper end.
+        unit: Unit of both.
+        beside: The value that it is shown beside, whose unit it gets; None: there is none.
+    """
+    factor, unit = _readable(beside or max(abs(lower), abs(upper)), unit)
     ends = [number(end / factor, 3) if end else "0" for end in (lower, upper)]
     return f"{ends[0]} to {ends[1]} {unit}".strip()
 

@@ -139,8 +139,9 @@ def describe_probability(probability: float | None) -> str:
 
 def describe_range(effect: FoundEffect, name: str) -> str:
     """Plausible range of an effect's parameter."""
-    size = effect.plausible.get(name)
-    return "" if size is None else quantity_range(size.lower, size.upper, effect.parameters[name].unit)
+    size, parameter = effect.plausible.get(name), effect.parameters[name]
+    shown = max(abs(parameter.value), parameter.standard_deviation or 0.0)
+    return "" if size is None else quantity_range(size.lower, size.upper, parameter.unit, shown)
 
 
 def evidence_strength(evidence: Evidence) -> str:
