@@ -1,4 +1,4 @@
-"""Notes on a result: sentences that know what they are about."""
+"""Notes on a result: sentences, each marked with its subject (records, fit, parameters)."""
 
 from collections.abc import Iterable
 from enum import StrEnum

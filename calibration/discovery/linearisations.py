@@ -1,4 +1,4 @@
-"""Points and linearisations of a fit, measured motions, priors."""
+"""Data classes: point, linearisation, prior, measured motion with its noise floor."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Search for missing effects: evidence so far, fit of the baseline, mass properties."""
+"""Base of a search: scores, accepted and rejected effects, fit of the baseline, mass properties."""
 
 import math
 from typing import NamedTuple

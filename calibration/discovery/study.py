@@ -56,7 +56,7 @@ class Study:
     own_width: np.ndarray
     cuts: tuple[FourierRows, ...]
     options: Options
-    decay_size: tuple[int, int]
+    decay_size: tuple[int, int] = (0, 0)
     notes: tuple[str, ...] = ()
     order_hint: str = ""
     expected: np.ndarray | None = None

@@ -1,4 +1,4 @@
-"""Irregular sea of a request."""
+"""Irregular sea that a `RequestedSea` describes."""
 
 import math
 from collections.abc import Callable

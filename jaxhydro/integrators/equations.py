@@ -1,4 +1,4 @@
-"""Walk through the primitive operations of a traced function, with calls opened."""
+"""Evaluation of a traced function, operation by operation, with calls inlined."""
 
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""Plan of a GPU kernel: what is computed, and where in a workspace it is stored."""
+"""Data classes of a GPU kernel's plan: values, instructions, and where in a workspace they are stored."""
 
 import math
 from collections.abc import Sequence

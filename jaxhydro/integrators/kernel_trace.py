@@ -1,4 +1,4 @@
-"""Plan of a traced function as one GPU kernel.
+"""Plan of a GPU kernel, made from a traced function.
 
 A kernel by Triton knows no concatenation, no slices, no gathers and no sizes but powers of two. So arrays lie in a workspace.
 What moves numbers (slices, concatenations, transposes, constant gathers) is done by their addresses when the plan is made, and

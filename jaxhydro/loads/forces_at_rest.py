@@ -1,4 +1,4 @@
-"""First-order wave forces on the strips of a platform at rest, by coefficient."""
+"""First-order wave forces on the strips of a platform at rest, taken off where a table replaces them."""
 
 from collections.abc import Mapping
 from typing import Any, Literal, NamedTuple

@@ -1,4 +1,4 @@
-"""Shared preparation of irregular seas of one band and one heading for a time integration."""
+"""Precomputed parts that irregular seas of equal frequencies and one heading share."""
 
 import math
 from typing import Any

@@ -72,7 +72,7 @@ def study_of(*found: MotionSeries) -> Study:
     """Of decays in surge."""
     records = (SimpleNamespace(id="t", degree_of_freedom="surge"),)
     cuts = (FourierRows.of([CUT] * len(found), 4000),)
-    return Study(None, None, (), np.zeros((0, 0)), 8, None, (), found, records, np.zeros((0, 0)), cuts, None, (0, 0))  # type: ignore[arg-type]
+    return Study(None, None, (), np.zeros((0, 0)), 8, None, (), found, records, np.zeros((0, 0)), cuts, None)  # type: ignore[arg-type]
 
 
 def left(squares, error) -> ResidualSummary:
@@ -121,7 +121,7 @@ def test_what_barely_moves_in_a_sea_weighs_nothing():
     found, cut = gather_sea(sea, [record], 0.5)  # type: ignore[arg-type]
     assert [one.channel for one in found] == ["surge", "sway", "pitch"]
     assert [bool(one.dof.any()) for one in found] == [True, False, True]
-    study = Study(None, None, (), np.zeros((0, 0)), 8, None, (), tuple(found), (), np.zeros((0, 0)), (cut,), None, (0, 0))  # type: ignore[arg-type]
+    study = Study(None, None, (), np.zeros((0, 0)), 8, None, (), tuple(found), (), np.zeros((0, 0)), (cut,), None)  # type: ignore[arg-type]
     errors = [cut(np.stack([0 * TIME, size * np.sin(0.3 * TIME), 0 * TIME])) for size in (0.0, 3.0)]
     assert len({float(minus_two_log_likelihood(study, one).sum()) for one in errors}) == 1
     assert list(study.main) == [True, False, True]

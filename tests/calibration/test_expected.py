@@ -118,7 +118,6 @@ def study() -> Study:
         np.zeros((0, 0)),
         (FourierRows.of([cut], n, 0.1),),
         None,
-        (0, 0),
     )  # type: ignore[arg-type]
 
 

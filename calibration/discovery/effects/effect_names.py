@@ -8,16 +8,16 @@ EFFECT_NAMES = {
     "umbilical": "an umbilical",
     "current": "a current",
     "hidden_oscillator": "a hidden oscillator",
-    "sensor_reference": "a wrong sensor reference",
-    "sea_state_dependent_drag": "drag apart for slow motion",
+    "sensor_reference": "a wrong tracked point",
+    "sea_state_dependent_drag": "a drag coefficient of its own for slow motion",
     "sensor_lag": "a sensor lag",
     "sensor_sign": "a wrong sign",
     "wave_gauge_position": "a wrong wave gauge position",
-    "wave_reflection": "waves that come back",
+    "wave_reflection": "reflected waves",
     "wave_excitation": "another wave excitation",
     "slender_body_forces": "second-order forces on members",
     "diffraction_correction": "first-order wave forces of potential flow",
-    "potential_flow": "what the platform's tables of potential flow have",
+    "potential_flow": "potential-flow tables of the platform file",
 }
 
 

@@ -1,4 +1,4 @@
-"""Highest peaks of a predicted gain."""
+"""Values of a shape that are worth trying: peaks of the predicted gain in likelihood."""
 
 import numpy as np
 import scipy  # its parts are imported when they are used: that takes a second

@@ -1,4 +1,4 @@
-"""Columns of all candidate effects at a fitted point."""
+"""Slopes of all records along every candidate effect, at a fitted point."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Passes of a linearisation along candidate effects.
+"""Which candidates are linearised together, and at which values of their shapes.
 
 They state which candidates are linearised together, and at which values of their shapes.
 """

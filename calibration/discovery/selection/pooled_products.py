@@ -1,4 +1,4 @@
-"""Products of the columns of a linear model, pool by pool.
+"""Products of the columns of a linear model over rows of equal weight (pools).
 
 A pool's rows share one weight. So the products of the columns in each pool are enough for least squares with any weights. They
 also give the mean square of every pool after any step. The rows are needed once.

@@ -1,4 +1,4 @@
-"""Flow past strips and ends as drag laws see it, and values that are kept for some lines.
+"""Relative velocity u, |u|u and areas that drag laws use, and values that are kept for some lines.
 
 A line is a strip's direction or an end's axis (see `Hull`): strips' first directions, their second ones, then ends.
 """

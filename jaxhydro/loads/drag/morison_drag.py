@@ -1,4 +1,4 @@
-"""Drag of strips and ends (Morison), with a law for its coefficients."""
+"""Morison drag, rho Cd A |u| u / 2, on strips and ends, with a law for its coefficients."""
 
 from typing import Any, ClassVar
 
