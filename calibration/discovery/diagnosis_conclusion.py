@@ -16,7 +16,7 @@ from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.latent_force.recover_force import latent_of
 from calibration.discovery.predictions import predictions_of
-from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE, Effect, Evidence, PlausibleRange
+from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE, WAVE_ORDER, Effect, Evidence, PlausibleRange
 from calibration.discovery.residual_anatomy import anatomy, signature
 from calibration.fitting.fit_conclusion import records_not_followed
 
@@ -78,7 +78,7 @@ def conclude(
         residuals,
         share,
         words,
-        next_test(search, after, verdict),
+        "" if WAVE_ORDER in doubted.values() else next_test(search, after, verdict),  # `records` has to be stated first
         (*lost, *doubts_of(search, after, augmented, more), *notes),
         seconds,
         latent,

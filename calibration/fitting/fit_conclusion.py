@@ -26,6 +26,7 @@ from calibration.result import Calibration, Estimate, TestFit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import natural_modes
+from jaxhydro.environment import DOFS
 from jaxhydro.platform.drag_laws import law_labels
 
 NOT_FOLLOWED_ERROR = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
@@ -176,6 +177,17 @@ def _periods(tests: Sequence[TestFit]) -> str:
     return f"{' to '.join(dict.fromkeys((medians[0], medians[-1])))} s" if medians else "none seen"
 
 
+def stated_zeros(campaign: Campaign) -> list[str]:
+    """Labels of lumped coefficients of the released motions that the platform file states as 0."""
+    digits = {str(DOFS.index(r.degree_of_freedom) + 1) for r in campaign.used("fit") if r.degree_of_freedom is not None}
+    return [
+        f"{name}.{key}"
+        for name in ("linear_damping", "quadratic_damping", "added_mass")
+        for key, value in getattr(campaign.platform, name).root.items()
+        if value == 0 and set(key[-2:]) <= digits
+    ]
+
+
 def remarks(
     campaign: Campaign,
     parameters: dict[str, Estimate],
@@ -194,6 +206,9 @@ def remarks(
         parameter_remarks.append(
             "no damping is fitted: the platform declares none or 0 for these motions, or calibrate.free leaves it out"
         )
+    if zeros := stated_zeros(campaign):
+        verb = "is" if len(zeros) == 1 else "are"
+        parameter_remarks.append(f"{listed(zeros)} {verb} 0 in the platform file, and not fitted: a start value above 0 is")
     band = band_sentence(campaign.manifest, campaign.model, campaign.records) if set(IN_WAVES) & set(kinds) else None
     record_remarks += [] if band is None else [band]
     vague = [label for label, p in parameters.items() if not p.identifiable]

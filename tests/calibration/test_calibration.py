@@ -3,6 +3,8 @@
 import dataclasses
 import math
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -14,6 +16,7 @@ import jaxhydro as jh
 from calibration.campaign.load_campaign import Campaign, load_campaign
 from calibration.fitting.decay_fit import calibrate, fit_of_decays, run_fit, set_up_decays
 from calibration.fitting.fit import Fit
+from calibration.fitting.fit_conclusion import stated_zeros
 from calibration.fitting.normal_equations import LeastSquares, cost_of, normal_equations
 from calibration.fitting.progress import Interrupted, Progress
 from calibration.identifiability.standard_deviations import correlated_samples, sandwich_covariance
@@ -617,3 +620,16 @@ def test_twenty_far_starts_of_the_platform_all_arrive() -> None:
 
     objectives = [one["objective"] for one in outcomes(20, processes=2)]
     assert len(objectives) == 20 and max(objectives) < 1.01 * min(objectives)
+
+
+def test_coefficients_that_the_platform_file_states_as_0_are_named() -> None:
+    """Only those of released motions; they are not fitted."""
+    parts = {
+        "linear_damping": {"B44": 0.0, "B33": 0.0},
+        "quadratic_damping": {"B44": 5.0},
+        "added_mass": {"A44": 0.0, "A24": 0.0},
+    }
+    platform = SimpleNamespace(**{name: SimpleNamespace(root=values) for name, values in parts.items()})
+    released = [SimpleNamespace(degree_of_freedom="roll"), SimpleNamespace(degree_of_freedom=None)]
+    campaign: Any = SimpleNamespace(platform=platform, used=lambda use: released)
+    assert stated_zeros(campaign) == ["linear_damping.B44", "added_mass.A44"]
