@@ -40,7 +40,7 @@ def second_order_hint(recorded: Sequence[tuple[Run, IrregularSea]], band: tuple[
     key = f"{{kinds: [{present[0]}]}}" if present else "{order: 1}"
     return (
         f"of the second-order waves that theory gives for waves of this height the records have {percent} of frequencies. "
-        f"If the waves were so, state `records: {key}` in campaign.yaml; if only records lack them, `records: {{order: 2}}`",
+        f"State in campaign.yaml `records: {key}` if the waves lack them, too; `records: {{order: 2}}` if only records do",
     )
 
 

@@ -58,6 +58,11 @@ class RecordSimulations:
         leaves, kind = jax.tree.flatten(padded(self.decays.data, samples, steps))
         return [jax.tree.unflatten(kind, decay) for decay in zip(*leaves, strict=True)]
 
+    @cached_property
+    def problem_without_data(self) -> DecayProblem:
+        """The problem of the decays without their records: one program serves any number of them."""
+        return eqx.tree_at(lambda problem: problem.data, self.decays, None)
+
     def of_decay(self, program: Callable[..., Any], where: Any, own: np.ndarray, i: int) -> Any:
         """Result of a program of a decay, without the padding.
 
@@ -68,8 +73,7 @@ class RecordSimulations:
             i: Number of the decay.
         """
         assert self.decays is not None
-        no_records = eqx.tree_at(lambda problem: problem.data, self.decays, None)  # one program, however many records
-        result = program(no_records, where, jnp.asarray(own), self.decay_data[i])
+        result = program(self.problem_without_data, where, jnp.asarray(own), self.decay_data[i])
         samples = self.decays.data.time.shape[1]
         return jax.tree.map(lambda array: np.asarray(array)[:, :samples], result)
 

@@ -207,8 +207,10 @@ def remarks(
             "no damping is fitted: the platform declares none or 0 for these motions, or calibrate.free leaves it out"
         )
     if zeros := stated_zeros(campaign):
-        verb = "is" if len(zeros) == 1 else "are"
-        parameter_remarks.append(f"{listed(zeros)} {verb} 0 in the platform file, and not fitted: a start value above 0 is")
+        verb, them = ("is", "it") if len(zeros) == 1 else ("are", "them")
+        parameter_remarks.append(
+            f"{listed(zeros)} {verb} 0 in the platform file and {verb} not fitted. To fit {them}, state a value above 0"
+        )
     band = band_sentence(campaign.manifest, campaign.model, campaign.records) if set(IN_WAVES) & set(kinds) else None
     record_remarks += [] if band is None else [band]
     vague = [label for label, p in parameters.items() if not p.identifiable]

@@ -1,7 +1,4 @@
-"""Which candidates are linearised together, and at which values of their shapes.
-
-They state which candidates are linearised together, and at which values of their shapes.
-"""
+"""Which candidates are linearised together, and at which values of their shapes."""
 
 from collections.abc import Mapping, Sequence
 
