@@ -34,7 +34,7 @@ SHARE = np.array([1.0, 1, 1, 0, 0, 0])  # of the powers of the length that displ
 
 
 @cache
-def barge(size: float) -> Model:
+def barge_platform(size: float) -> Platform:
     """A tapered barge with a bilge column, moored by springs: lengths times `size`."""
     n, point = size**3, lambda *x: [size * one for one in x]
     data = {
@@ -80,7 +80,12 @@ def barge(size: float) -> Model:
             ],
         },
     }
-    return built(validate(Platform, copy.deepcopy(data), data["name"]))
+    return validate(Platform, copy.deepcopy(data), data["name"])
+
+
+def barge(size: float) -> Model:
+    """The model of `barge_platform`."""
+    return built(barge_platform(size))
 
 
 @eqx.filter_jit
@@ -253,7 +258,7 @@ def test_a_calibration(tmp_path) -> None:
             records=records,
             findings=(),
             model=declared,
-            platform=SimpleNamespace(name="barge"),
+            platform=barge_platform(size),
             used=lambda use, records=records: [r for r in records if r.use == use],
         )
         result = calibrate(campaign, free=["hull.Ca_z", "hull.Cd_z"])
