@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.campaign.load_campaign import load_campaign
+from calibration.discovery.baseline_fit import fit_baseline
+from calibration.discovery.campaign_study import highest_frequency
 from calibration.discovery.diagnosis_fits import calibration_of
-from calibration.discovery.gather import highest_frequency
 from calibration.discovery.latent_force.recover_force import accelerations, forces_of, resampled_tests
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest
 from calibration.discovery.search import Search
@@ -113,15 +114,15 @@ def reconstruct(folder: Path) -> Reconstruction:
     """Fit the baseline of a campaign as `diagnose` does, and reconstruct the forces that it lacks."""
     begun = time.monotonic()
     campaign = load_campaign(folder)
-    search = Search(campaign, set_up_study(campaign, options_of(campaign)), lambda *_: None)
-    fitted = calibration_of(campaign, search, search.fit_baseline(), None)
+    search = Search.of(campaign, set_up_study(campaign, options_of(campaign)), lambda *_: None)
+    fitted = calibration_of(campaign, search.fits, fit_baseline(search), None)
     model = fitted.model
     rest = equilibrium(model)
     mass, stiffness = (np.asarray(one) for one in linearised(model, rest))
     base = np.asarray(rest) * (campaign.manifest.zero is not None)
     scored = {test.id: {one.channel: float(one.relative) for one in test.series if one.scored} for test in fitted.tests}
     tests = []
-    for test in resampled_tests(search, fitted):
+    for test in resampled_tests(search.fits, fitted):
         forces = forces_of(model, test, base, highest_frequency(model))
         mine = np.ix_(*[[DOFS.index(name) for name in forces]] * 2)
         damping = mean_damping(model, test, forces, mass)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.discovery_baselines.reconstructed_forces import ForcedTest
-from calibration.discovery.latent_force.force_law import lagged, quarter_period_later, squared_envelope
+from calibration.discovery.latent_force.term_library import lagged, quarter_period_later, squared_envelope
 
 FRICTION_SPEED_OVER_RMS = 0.05  # v0 of tanh(v/v0) over the rms velocity
 YIELD_OVER_RMS = 0.5  # yield displacement of the hysteretic term over the rms motion

@@ -8,20 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest_sections import IN_WAVES, WAVE
 from calibration.discovery.diagnosis_fits import test_fits_at
+from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.reported_effects import Effect, Evidence
 from calibration.formatting import listed
 from calibration.result import Estimate
 from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period
-
-if TYPE_CHECKING:
-    from calibration.discovery.search import Search
 
 MAX_REVERSED_CORRELATION = -0.6  # of measurement and model, in every fitted test of a reversed channel
 MIN_MOTION_OVER_NOISE = 5.0  # of a motion that is compared
@@ -45,14 +43,14 @@ class SignComparison(NamedTuple):
     reversed_error: float
 
 
-def reversed_channels(campaign: Campaign, search: Search) -> dict[str, Effect]:
+def reversed_channels(campaign: Campaign, fits: EffectFits) -> dict[str, Effect]:
     """Channels whose sign is wrong, as effects by channel (a motion, or `wave`).
 
     Where all motions are reversed, it is the wave.
     """
-    if not search.study.seas:
+    if not fits.study.seas:
         return {}
-    met = _met(campaign, search)
+    met = _met(campaign, fits)
     fitted = [comparison for comparison in met if comparison.use == "fit"]
     told = list(dict.fromkeys(comparison.channel for comparison in fitted))
     wrong = [
@@ -88,9 +86,9 @@ def reversal_note(channels: Sequence[str]) -> str:
     )
 
 
-def _met(campaign: Campaign, search: Search) -> list[SignComparison]:
+def _met(campaign: Campaign, fits: EffectFits) -> list[SignComparison]:
     comparisons = []
-    for test in test_fits_at(campaign, search, search.start):
+    for test in test_fits_at(campaign, fits, fits.start):
         wave = campaign.record(test.id).wave
         if test.kind not in IN_WAVES or wave is None:
             continue

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hints
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -18,12 +18,9 @@ from calibration.campaign.manifest import platform_source
 from calibration.discovery.diagnosis import Rejected, Score
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.fit_state import FitState, ResidualSummary
-from calibration.discovery.search import AcceptedEffect, ListedVariant
+from calibration.discovery.search import AcceptedEffect, ListedVariant, Search
 from jaxhydro import fingerprint as fingerprints
 from jaxhydro.files import staged
-
-if TYPE_CHECKING:
-    from calibration.discovery.search import Search
 
 CHECKPOINT_FILE = ".diagnosis-under-way"
 DOCUMENT_KEY = "about"  # the JSON document in the file; arrays are numbered
@@ -64,7 +61,7 @@ class Checkpoint:
             yield from (effect.before, effect.after)
 
 
-def save_checkpoint(path: Path, search: "Search", states: list[FitState], seconds: float) -> None:
+def save_checkpoint(path: Path, search: Search, states: list[FitState], seconds: float) -> None:
     """Write a checkpoint file atomically.
 
     Args:
@@ -77,15 +74,15 @@ def save_checkpoint(path: Path, search: "Search", states: list[FitState], second
         InputError: If the file cannot be written.
     """
     reached = Checkpoint(
-        search.study.expected,
+        search.fits.study.expected,
         tuple(states),
-        search.accepted,
-        tuple(search.scores),
-        search.rejected,
-        tuple(search.notes),
-        tuple(search.shortlist),
-        search.alone,
-        np.asarray(search.begun),
+        search.record.accepted,
+        tuple(search.record.scores),
+        search.record.rejected,
+        tuple(search.record.notes),
+        tuple(search.record.shortlist),
+        search.record.alone,
+        np.asarray(search.fits.begun),
         seconds,
     )
     arrays: list[np.ndarray] = []
@@ -101,7 +98,7 @@ def save_checkpoint(path: Path, search: "Search", states: list[FitState], second
         (temporary / path.name).write_bytes(content.getvalue())
 
 
-def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = lambda text: None) -> list[FitState]:
+def load_checkpoint(path: Path, search: Search, tell: Callable[[str], None] = lambda text: None) -> list[FitState]:
     """Restore a search from a checkpoint file of the same diagnosis.
 
     Args:
@@ -119,7 +116,7 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
                 tell(f"{path}: {_other(about['computed_with'])}; the diagnosis starts anew")
                 return []
             arrays = {name: file[name] for name in file.files if name != DOCUMENT_KEY}
-        candidates = {candidate.name: candidate for candidate in search.setup.candidates}
+        candidates = {candidate.name: candidate for candidate in search.fits.setup.candidates}
         reached: Checkpoint = _rebuilt(Checkpoint, about["reached"], arrays, candidates)
         _check(reached, search)
     except FileNotFoundError:
@@ -130,17 +127,21 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
             f"{path}: what an earlier run reached cannot be read ({type(error).__name__}: {message}); the diagnosis starts anew"
         )
         return []
-    search.study = replace(search.study, expected=reached.expected)
-    search.accepted, search.scores, search.rejected = reached.accepted, list(reached.scores), reached.rejected
-    search.notes, search.shortlist = list(reached.notes), list(reached.shortlist)
-    search.alone, search.earlier = reached.alone, reached.seconds
-    search.anchor(reached.begun)
+    search.fits.study = replace(search.fits.study, expected=reached.expected)
+    search.record.accepted, search.record.scores, search.record.rejected = (
+        reached.accepted,
+        list(reached.scores),
+        reached.rejected,
+    )
+    search.record.notes, search.record.shortlist = list(reached.notes), list(reached.shortlist)
+    search.record.alone, search.record.earlier = reached.alone, reached.seconds
+    search.fits.anchor(reached.begun)
     return list(reached.states)
 
 
-def fingerprint(search: "Search") -> str:
+def fingerprint(search: Search) -> str:
     """Hash of all inputs of a diagnosis: program, campaign and files, platform, candidates, options."""
-    setup, campaign = search.setup, search.campaign
+    setup, campaign = search.fits.setup, search.fits.campaign
     manifest, folder = campaign.manifest, campaign.folder
     files = [folder / test.file for test in manifest.tests]
     files += [Path(platform_source(manifest, folder)), *map(Path, campaign.platform.files().values())]
@@ -158,9 +159,9 @@ def _other(before: Any) -> str:
     return f"an earlier run was of other {', '.join(made) or 'inputs'}"
 
 
-def _check(reached: Checkpoint, search: "Search") -> None:
+def _check(reached: Checkpoint, search: Search) -> None:
     """Check array sizes against the search; raises ValueError."""
-    study = search.study
+    study = search.fits.study
     rows, series, free = len(study.row_series), len(study.series), len(study.start)
     if not reached.states:
         raise ValueError("no states")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
+from calibration.discovery.baseline_fit import fit_baseline
 from calibration.discovery.channel_signs import reversal_note, reversed_channels, with_signs_reversed
 from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnosis import Diagnosis
@@ -15,8 +16,11 @@ from calibration.discovery.diagnosis_conclusion import conclude, unexplained_mot
 from calibration.discovery.doubts import abandoned_decays, worsened_motions
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.fit_state import FitState
+from calibration.discovery.mass_properties_check import with_mass_properties
 from calibration.discovery.residual_anatomy import anatomy
-from calibration.discovery.selection.verified_search import VerifiedSearch
+from calibration.discovery.search import Search
+from calibration.discovery.selection.joint_search import JointSearch
+from calibration.discovery.selection.verification import Verification
 from calibration.discovery.set_up import set_up_study
 from calibration.fitting.progress import Progress
 from calibration.residuals.measured_seas import NO_ZERO
@@ -71,7 +75,7 @@ def diagnose(
     unusable: list[str] = []  # why an earlier run's checkpoint is not resumed
 
     def spent() -> float:
-        return search.earlier + clock.monotonic() - begun
+        return search.record.earlier + clock.monotonic() - begun
 
     def reach(state: FitState) -> None:
         states.append(state)
@@ -80,16 +84,16 @@ def diagnose(
 
     say("reading the records", 0.0)
 
-    def begun_with(campaign: Campaign) -> VerifiedSearch:
+    def begun_with(campaign: Campaign) -> Search:
         how = options_of(campaign) if options is None else options
-        search = VerifiedSearch(campaign, set_up_study(campaign, how, candidates), say)
+        search = Search.of(campaign, set_up_study(campaign, how, candidates), say)
         states.extend([] if kept is None else load_checkpoint(kept, search, unusable.append))
         return search
 
     search = begun_with(campaign)
-    if search.study.order_hint:  # before minutes are spent on it
-        warnings.warn(search.study.order_hint, WaveOrderWarning, stacklevel=2)
-    wrong = {} if states else reversed_channels(campaign, search)
+    if search.fits.study.order_hint:  # before minutes are spent on it
+        warnings.warn(search.fits.study.order_hint, WaveOrderWarning, stacklevel=2)
+    wrong = {} if states else reversed_channels(campaign, search.fits)
     if wrong:
         search = begun_with(campaign := with_signs_reversed(campaign, list(wrong)))
     if states:
@@ -97,21 +101,25 @@ def diagnose(
     else:
         if unusable:
             warnings.warn(unusable[-1], CheckpointWarning, stacklevel=2)
-        reach(search.fit_baseline())
+        reach(fit_baseline(search))
 
     def concluded() -> Diagnosis:
         signs = [reversal_note(list(wrong))] if wrong else []
-        lost = [] if search.alone is None else abandoned_decays(search.study, search.alone, states[-1].summary)
+        lost = (
+            [] if search.record.alone is None else abandoned_decays(search.fits.study, search.record.alone, states[-1].summary)
+        )
         unknown = [] if campaign.manifest.zero is not None else [UNKNOWN_ZERO_NOTE]
         findings = [str(finding) for finding in group_findings(campaign.findings)]
-        worse = worsened_motions(search.study, states[0].summary, states[-1].summary)
-        every = (*signs, *search.study.notes, *search.notes, *lost, *worse, *unknown, *findings)
+        worse = worsened_motions(search.fits.study, states[0].summary, states[-1].summary)
+        every = (*signs, *search.fits.study.notes, *search.record.notes, *lost, *worse, *unknown, *findings)
         return conclude(campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 
     try:
-        states.append(search.verify(states[0], search.search(states, reach)))
-        if not unexplained_motions(search, anatomy(search, states[-1])):  # what is unexplained may have bent them
-            states.append(search.with_mass_properties(states[-1]))
+        joint = JointSearch(search)
+        selected = joint.run(states, reach)
+        states.append(Verification(search, joint).run(states[0], selected))
+        if not unexplained_motions(search.fits, anatomy(search.fits, states[-1])):  # what is unexplained may have bent them
+            states.append(with_mass_properties(search, states[-1]))
     except KeyboardInterrupt as stopped:
         stopping()
         stopped.partial = concluded()  # type: ignore[attr-defined]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,17 +11,16 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.discovery.diagnosis import Diagnosis, Finding, Outcome
 from calibration.discovery.diagnosis_fits import calibration_of, estimates_of, values_as_estimates
 from calibration.discovery.doubts import doubted_effects, doubts_of
+from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
+from calibration.discovery.fit_state import FitState
 from calibration.discovery.latent_force.recover_force import latent_of
 from calibration.discovery.predictions import predictions_of
 from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE, WAVE_ORDER, Effect, Evidence, PlausibleRange
 from calibration.discovery.residual_anatomy import anatomy, signature
+from calibration.discovery.search import Search
 from calibration.fitting.fit_conclusion import records_not_followed
-
-if TYPE_CHECKING:
-    from calibration.discovery.fit_state import FitState
-    from calibration.discovery.search import Search
 
 # of a motion: a larger residual, above twice the noise, is unexplained. Fitted seas of synthetic campaigns with nothing missing
 # leave up to 0.04
@@ -50,50 +48,51 @@ def conclude(
         seconds: Computing time (s).
         first: Effects found before the search began.
     """
-    baseline = calibration_of(campaign, search, before, None)
-    augmented = calibration_of(campaign, search, after, baseline)
+    fits, record = search
+    baseline = calibration_of(campaign, fits, before, None)
+    augmented = calibration_of(campaign, fits, after, baseline)
     at_end = {
         candidate.name: IMPLAUSIBLE_SIZE
         for candidate in after.chosen
-        if any(size.at_end for size in plausible_ranges(search, candidate, after).values())
+        if any(size.at_end for size in plausible_ranges(fits, candidate, after).values())
     }
     doubted = at_end | doubted_effects(search, after, baseline, augmented)
     effects = (*first, *(accepted_effect(search, candidate, after, doubted.get(candidate.name)) for candidate in after.chosen))
-    share, words = signature(search, before, after)
-    residuals = anatomy(search, after)
-    more = unexplained_motions(search, residuals)
+    share, words = signature(fits, before, after)
+    residuals = anatomy(fits, after)
+    more = unexplained_motions(fits, residuals)
     sure = [effect for effect in effects if effect.in_doubt is None]
     verdict = Outcome.FOUND if sure else (Outcome.UNEXPLAINED if effects or more else Outcome.NOTHING_MISSING)
-    lost = records_not_followed([test for test in augmented.tests if test.kind == "decay"], search.setup.baseline)
-    latent = latent_of(search, augmented) if verdict == Outcome.UNEXPLAINED else ()
+    lost = records_not_followed([test for test in augmented.tests if test.kind == "decay"], fits.setup.baseline)
+    latent = latent_of(fits, augmented) if verdict == Outcome.UNEXPLAINED else ()
     return Diagnosis(
         campaign.manifest.name,
         verdict,
         baseline,
         augmented,
         effects,
-        tuple(search.rejected.values()),
-        tuple(search.scores),
-        anatomy(search, before),
+        tuple(record.rejected.values()),
+        tuple(record.scores),
+        anatomy(fits, before),
         residuals,
         share,
         words,
         "" if WAVE_ORDER in doubted.values() else next_test(search, after, verdict),  # `records` has to be stated first
-        (*lost, *doubts_of(search, after, augmented, more), *notes),
+        (*lost, *doubts_of(fits, after, augmented, more), *notes),
         seconds,
         latent,
-        search.study.options if search.study.seas else None,
-        predictions=predictions_of(search, after, augmented.tests),
+        fits.study.options if fits.study.seas else None,
+        predictions=predictions_of(fits, after, augmented.tests),
     )
 
 
-def unexplained_motions(search: Search, residuals: Sequence[Finding]) -> list[Finding]:
+def unexplained_motions(fits: EffectFits, residuals: Sequence[Finding]) -> list[Finding]:
     """Residuals of fitted tests that exceed both noise and the usual error of a model, the largest first.
 
     Only motions that a test is about count.
     """
-    kinds = {series.test: "decay" if series.kind == "decay" else "waves" for series in search.study.series}
-    main = {(series.test, series.channel) for series, is_main in zip(search.study.series, search.study.main) if is_main}
+    kinds = {series.test: "decay" if series.kind == "decay" else "waves" for series in fits.study.series}
+    main = {(series.test, series.channel) for series, is_main in zip(fits.study.series, fits.study.main) if is_main}
     told = [finding for finding in residuals if finding.use == "fit" and (finding.test, finding.channel) in main]
     more = [
         finding
@@ -105,11 +104,12 @@ def unexplained_motions(search: Search, residuals: Sequence[Finding]) -> list[Fi
 
 def next_test(search: Search, after: FitState, verdict: Outcome) -> str:
     """The test that would tell the effects found from others; without any, that of the best rejected one."""
+    fits, record = search
     if verdict == Outcome.UNEXPLAINED:
-        last = [score for score in search.scores if score.round == search.scores[-1].round]
+        last = [score for score in record.scores if score.round == record.scores[-1].round]
         best = max(last, key=lambda score: score.gain, default=None)
         name = None if best is None else (best.effect, best.degree_of_freedom)
-        mine = [candidate for candidate in search.setup.candidates if (candidate.effect, candidate.dof) == name]
+        mine = [candidate for candidate in fits.setup.candidates if (candidate.effect, candidate.dof) == name]
         return "; ".join(
             f"{candidate.telling} (of what was tried, {effect_in_words(candidate.name)} came nearest)"
             for candidate in mine
@@ -127,11 +127,12 @@ def accepted_effect(search: Search, candidate: Candidate, after: FitState, doubt
         after: Fit of the final model.
         doubt: Why it is in doubt (see `Effect.in_doubt`), or None.
     """
-    accepted, used = search.accepted[candidate.name], search.study.used
+    fits, accepted = search.fits, search.record.accepted[candidate.name]
+    used = fits.study.used
     before, now = float(accepted.before.summary.squares[used].sum()), float(accepted.after.summary.squares[used].sum())
-    meanings = dict.fromkeys(search.study.model.about(label).meaning for label in candidate.amplitudes)
+    meanings = dict.fromkeys(fits.study.model.about(label).meaning for label in candidate.amplitudes)
     held = accepted.verdict.held if accepted.verdict.unseen else float("nan")
-    parameters = estimates_of(search, after, candidate.labels) | values_as_estimates(search, after, candidate.choices)
+    parameters = estimates_of(fits, after, candidate.labels) | values_as_estimates(fits, after, candidate.choices)
     left_out = accepted.held_out[np.abs(accepted.held_out) > 0]
     evidence = Evidence(
         accepted.score,
@@ -153,16 +154,16 @@ def accepted_effect(search: Search, candidate: Candidate, after: FitState, doubt
         accepted.alike,
         candidate.telling or None,
         doubt,
-        plausible_ranges(search, candidate, after),
+        plausible_ranges(fits, candidate, after),
     )
 
 
-def plausible_ranges(search: Search, candidate: Candidate, state: FitState) -> dict[str, PlausibleRange]:
+def plausible_ranges(fits: EffectFits, candidate: Candidate, state: FitState) -> dict[str, PlausibleRange]:
     """Plausible ranges of an effect's amplitudes, and which sizes in a fit are at an end."""
     ranges = {}
     for label in candidate.amplitudes:
-        size, value = search.setup.plausible[label], search.study.value(label, state.linearisation.point.x)
-        null = search.study.space.free[search.study.labels.index(label)].start
+        size, value = fits.setup.plausible[label], fits.study.value(label, state.linearisation.point.x)
+        null = fits.study.space.free[fits.study.labels.index(label)].start
         near = END_SHARE * (size.upper - size.lower)
         at_end = any(abs(value - end) < near < abs(end - null) for end in (size.lower, size.upper))
         ranges[label] = PlausibleRange(size.lower, size.upper, size.source, at_end)

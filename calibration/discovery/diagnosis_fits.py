@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
+from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import with_candidates, with_effects
 from calibration.discovery.eliminated_least_squares import predict_gain
+from calibration.discovery.fit_state import FitState
+from calibration.discovery.linearisations import Point
 from calibration.residuals.measured_seas import peak_period
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from jaxhydro.analysis.sea_statistics import bands_of
@@ -19,32 +21,23 @@ from jaxhydro.analysis.spectral import band_weights
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 
-if TYPE_CHECKING:
-    from calibration.discovery.fit_state import FitState
-    from calibration.discovery.linearisations import Point
-    from calibration.discovery.search import Search
 
-
-def augmented_model(search: Search, state: FitState) -> Model:
+def augmented_model(fits: EffectFits, state: FitState) -> Model:
     """The baseline with the effects found, all parameters as fitted."""
-    active = search.active(state.chosen)
-    moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
-    values = {
-        label: search.study.value(label, state.linearisation.point.x) for label, m in zip(search.study.labels, moved) if m
-    }
+    active = fits.active(state.chosen)
+    moved = np.abs(fits.study.directions[active]).sum(axis=0) > 0
+    values = {label: fits.study.value(label, state.linearisation.point.x) for label, m in zip(fits.study.labels, moved) if m}
     values |= {
-        label: search.study.value(label, state.linearisation.point.x)
-        for candidate in state.chosen
-        for label in candidate.choices
+        label: fits.study.value(label, state.linearisation.point.x) for candidate in state.chosen for label in candidate.choices
     }
     own_candidates = [candidate for candidate in state.chosen if candidate.load is not None]
-    return with_effects(with_candidates(search.setup.baseline, own_candidates), values).at_values(values)
+    return with_effects(with_candidates(fits.setup.baseline, own_candidates), values).at_values(values)
 
 
-def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[str, Estimate]:
+def estimates_of(fits: EffectFits, state: FitState, names: Sequence[str]) -> dict[str, Estimate]:
     """Estimates with standard deviations of directions that are one parameter each."""
-    linearisation, study = state.linearisation, search.study
-    prior = search.prior(state.chosen)
+    linearisation, study = state.linearisation, fits.study
+    prior = fits.prior(state.chosen)
     deviations = predict_gain(study, linearisation, prior).deviation
     values = {}
     for name in names:
@@ -66,32 +59,32 @@ def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[
     return values
 
 
-def calibration_of(campaign: Campaign, search: Search, state: FitState, before: Calibration | None) -> Calibration:
+def calibration_of(campaign: Campaign, fits: EffectFits, state: FitState, before: Calibration | None) -> Calibration:
     """A fit as a calibration result: parameters, tests, errors in bands.
 
     Args:
         campaign: The campaign.
-        search: The search.
+        fits: Study, candidates, priors.
         state: The fit.
         before: An earlier fit whose motions are compared with, or None.
     """
     effects = [label for candidate in state.chosen for label in candidate.labels]
-    nuisances = [name for name in search.setup.nuisances if name in search.study.labels and name not in effects]
-    names = [*search.setup.base, *nuisances, *effects]
-    lines = [parameter.label for parameter in search.study.space.free if parameter.label.startswith("mooring.")]
+    nuisances = [name for name in fits.setup.nuisances if name in fits.study.labels and name not in effects]
+    names = [*fits.setup.base, *nuisances, *effects]
+    lines = [parameter.label for parameter in fits.study.space.free if parameter.label.startswith("mooring.")]
     choices = [label for candidate in state.chosen for label in candidate.choices]
     parameters = (
-        estimates_of(search, state, names)
-        | values_as_estimates(search, state, lines, False)
-        | values_as_estimates(search, state, choices)
+        estimates_of(fits, state, names)
+        | values_as_estimates(fits, state, lines, False)
+        | values_as_estimates(fits, state, choices)
     )
-    tests = test_fits_at(campaign, search, state.linearisation.point)
+    tests = test_fits_at(campaign, fits, state.linearisation.point)
     if before is not None:
         earlier = {test.id: test for test in before.tests}
         tests = [_with_start(test, earlier[test.id]) for test in tests]
     return Calibration(
         campaign.manifest.name,
-        augmented_model(search, state),
+        augmented_model(fits, state),
         parameters,
         tuple(tests),
         state.settled,
@@ -104,19 +97,21 @@ def calibration_of(campaign: Campaign, search: Search, state: FitState, before: 
     )
 
 
-def values_as_estimates(search: Search, state: FitState, labels: Sequence[str], determined: bool = True) -> dict[str, Estimate]:
+def values_as_estimates(
+    fits: EffectFits, state: FitState, labels: Sequence[str], determined: bool = True
+) -> dict[str, Estimate]:
     """Estimates without standard deviations: of discrete choices, and of mooring lines that move together.
 
     Args:
-        search: The search.
+        fits: Study, candidates, priors.
         state: The fit.
         labels: Labels of the values.
         determined: Whether the records determine them.
     """
     estimates = {}
     for label in labels:
-        about, start = search.study.model.about(label), search.study.space.free[search.study.labels.index(label)].start
-        value = search.study.value(label, state.linearisation.point.x)
+        about, start = fits.study.model.about(label), fits.study.space.free[fits.study.labels.index(label)].start
+        value = fits.study.value(label, state.linearisation.point.x)
         estimates[label] = Estimate(label, value, None, about.unit, about.meaning, start, False, determined)
     return estimates
 
@@ -133,11 +128,11 @@ def _with_start(test: TestFit, before: TestFit) -> TestFit:
     return replace(test, start=start, bands=bands)
 
 
-def test_fits_at(campaign: Campaign, search: Search, point: Point) -> list[TestFit]:
+def test_fits_at(campaign: Campaign, fits: EffectFits, point: Point) -> list[TestFit]:
     """Measured and simulated motions of every test at a point."""
-    study = search.study
+    study = fits.study
     motions = study.motions(point)
-    fits = {}
+    by_name: dict[str, TestFit] = {}
     if study.decays is not None:
         data = study.decays.data
         in_decays = np.asarray(motions.pop(0)).reshape(len(study.decay_records), len(data.dofs), -1)
@@ -153,7 +148,7 @@ def test_fits_at(campaign: Campaign, search: Search, point: Point) -> list[TestF
                     scored = channel == record.degree_of_freedom
                     rows.append(Series(channel, measured, simulated, off, record.noise[channel], scored))
             dof_name = record.degree_of_freedom
-            fits[record.id] = TestFit(record.id, record.use, "decay", dof_name, record.time, tuple(rows), {}, record.file)
+            by_name[record.id] = TestFit(record.id, record.use, "decay", dof_name, record.time, tuple(rows), {}, record.file)
     by_id = {r.id: r for r in campaign.records}
     all_runs = runs(campaign) if study.seas else ()
     peaks = {record.id: peak_period(run, record, campaign.manifest.scale) for run in all_runs for record in run.records}
@@ -163,13 +158,13 @@ def test_fits_at(campaign: Campaign, search: Search, point: Point) -> list[TestF
         for test, begin, values, residual in zip(sea.tests, sea.begins, np.asarray(sea.measured), every):
             record = by_id[test]
             series = tuple(
-                Series(DOFS[dof], m, m + r, 0.0, record.noise[DOFS[dof]], DOFS[dof] in search.setup.motions)
+                Series(DOFS[dof], m, m + r, 0.0, record.noise[DOFS[dof]], DOFS[dof] in fits.setup.motions)
                 for dof, m, r in zip(sea.dofs, values, residual)
             )
             time = np.asarray(sea.times[begin : begin + n])
             bands = _bands(series, float(time[1] - time[0]), peaks[test]) if record.kind == "irregular" else {}
-            fits[test] = TestFit(test, record.use, record.kind, None, time, series, {}, record.file, bands)
-    return [fits[r.id] for r in campaign.records if r.id in fits]
+            by_name[test] = TestFit(test, record.use, record.kind, None, time, series, {}, record.file, bands)
+    return [by_name[r.id] for r in campaign.records if r.id in by_name]
 
 
 def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, dict[str, BandError]]:

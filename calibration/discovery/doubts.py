@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibration.discovery.acceptance import worsening
+from calibration.discovery.acceptance import Verdict, worsening
 from calibration.discovery.diagnosis import Finding
+from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import capitalised, effect_in_words
+from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.reported_effects import HELD_OUT_ERROR, WAVE_ORDER
+from calibration.discovery.search import Search
+from calibration.discovery.study import Study
 from calibration.formatting import listed, number, percent
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
-
-if TYPE_CHECKING:
-    from calibration.discovery.acceptance import Verdict
-    from calibration.discovery.fit_state import FitState, ResidualSummary
-    from calibration.discovery.search import Search
-    from calibration.discovery.study import Study
 
 MAX_DECAY_RESIDUAL = 0.1  # of a decay's motion, that a joint fit may leave
 MAX_RESIDUAL_RATIO = 3.0  # of a joint fit's residual to that of a fit to decays alone
@@ -33,17 +30,17 @@ MAX_HELD_OUT_RATIO = 1.05
 MAX_COEFFICIENT_RATIO = 3.0  # of a coefficient to its declared value, or the inverse
 
 
-def doubts_of(search: Search, state: FitState, fitted: Calibration, more: Sequence[Finding]) -> list[str]:
+def doubts_of(fits: EffectFits, state: FitState, fitted: Calibration, more: Sequence[Finding]) -> list[str]:
     """Notes on doubts about the final fit.
 
     Args:
-        search: The search.
+        fits: Study, candidates, priors.
         state: The final fit.
         fitted: The same as a calibration.
         more: Residuals beyond noise that are left.
     """
     beside = [unexplained_note(state.chosen, more)] if state.chosen and more else []
-    return [*moving_release_notes(search, state), *beside, *far_coefficient_notes(search, fitted)]
+    return [*moving_release_notes(fits, state), *beside, *far_coefficient_notes(fits, fitted)]
 
 
 def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary) -> list[str]:
@@ -115,13 +112,13 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
     - the held-out error rose, in all or in the effect's motion;
     - the effect goes with the square of the waves, and the wave records lack the second order that the model is driven with.
     """
-    tried = {name: rejected.taken_out for name, rejected in search.rejected.items() if rejected.taken_out is not None}
-    verdicts = {candidate.name: search.accepted[candidate.name].verdict for candidate in state.chosen}
+    tried = {name: rejected.taken_out for name, rejected in search.record.rejected.items() if rejected.taken_out is not None}
+    verdicts = {candidate.name: search.record.accepted[candidate.name].verdict for candidate in state.chosen}
     doubted = outdone_effects({name: verdict.worth for name, verdict in verdicts.items()}, tried)
     every = held_out_error_rose(before.objective("holdout"), after.objective("holdout"))
     worse = [dof for dof in DOFS if held_out_error_rose(before.objective("holdout", dof), after.objective("holdout", dof))]
     doubted |= {candidate.name: HELD_OUT_ERROR for candidate in state.chosen if every or candidate.dof in worse}
-    if search.study.order_hint:
+    if search.fits.study.order_hint:
         doubted |= {candidate.name: WAVE_ORDER for candidate in state.chosen if candidate.effect in SQUARED_WAVE_EFFECTS}
     return doubted
 
@@ -141,12 +138,12 @@ def unexplained_note(chosen: Sequence[Candidate], more: Sequence[Finding]) -> st
     )
 
 
-def moving_release_notes(search: Search, state: FitState) -> list[str]:
+def moving_release_notes(fits: EffectFits, state: FitState) -> list[str]:
     """Note on decays that begin in motion, where an effect with memory was found."""
     names = [
         effect_in_words(candidate.effect, candidate.dof) for candidate in state.chosen if candidate.effect in MEMORY_EFFECTS
     ]
-    study, moving = search.study, []
+    study, moving = fits.study, []
     if study.decays is None or not names:
         return []
     for record, release in zip(study.decay_records, state.linearisation.point.own.reshape(len(study.decay_records), 3, -1)):
@@ -162,9 +159,9 @@ def moving_release_notes(search: Search, state: FitState) -> list[str]:
     ]
 
 
-def far_coefficient_notes(search: Search, fitted: Calibration) -> list[str]:
+def far_coefficient_notes(fits: EffectFits, fitted: Calibration) -> list[str]:
     """Note on coefficients that end far from their values in the baseline."""
-    estimates = [fitted.parameters[label] for label in search.setup.base if label in fitted.parameters]
+    estimates = [fitted.parameters[label] for label in fits.setup.base if label in fitted.parameters]
     far = [
         estimate
         for estimate in estimates

@@ -116,6 +116,10 @@ class EffectFits:
         reached = self.fit(linearisation, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction, REFIT_TOLERANCE)
         return self.state(chosen, reached)
 
+    def refit_from(self, state: FitState, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
+        """Fit to convergence from a state on, with slopes of its own and the shapes of the effects free."""
+        return self.refit(self.study.linearise(state.linearisation.point, self.active(chosen)), chosen, name, fraction)
+
     def fit(
         self,
         linearisation: Linearisation,
@@ -175,6 +179,10 @@ class EffectFits:
         """A point with some directions set back to where the search began."""
         moved = np.abs(self.study.directions[self.study.index(names)]).sum(axis=0) > 0
         return replace(point, x=np.where(moved, self.begun, point.x))
+
+    def likelihood_gain(self, before: FitState, after: FitState) -> float:
+        """Decrease of -2 ln L of the fitted tests from one state to another."""
+        return float((before.likelihood - after.likelihood)[self.study.used].sum())
 
     def likeliest(self, *states: FitState) -> FitState:
         """The state that follows the fitted tests best."""

@@ -12,10 +12,11 @@ import numpy as np
 
 from calibration.campaign.records import Record
 from calibration.discovery.broyden_fit import fit
+from calibration.discovery.campaign_study import highest_frequency
 from calibration.discovery.expected_residuals import expected_rows
 from calibration.discovery.fit_state import FitState, ResidualSummary
-from calibration.discovery.gather import gather_decay_series, gather_sea, highest_frequency
 from calibration.discovery.linearisations import Point, Prior
+from calibration.discovery.measured_series import gather_decay_series, gather_sea
 from calibration.discovery.study import Study
 from calibration.residuals.decays import crossing_period, first_guess
 

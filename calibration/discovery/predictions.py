@@ -11,35 +11,32 @@ References:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calibration.discovery.diagnosis import Prediction
+from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.eliminated_least_squares import predict_gain
+from calibration.discovery.fit_state import FitState
 from calibration.result import TestFit
 from jaxhydro.environment import DOFS
-
-if TYPE_CHECKING:
-    from calibration.discovery.fit_state import FitState
-    from calibration.discovery.search import Search
 
 NORMAL_95 = 1.96  # standard deviations of a normal distribution on both sides of its mean that hold 95 %
 
 
-def predictions_of(search: Search, state: FitState, tests: Sequence[TestFit]) -> tuple[Prediction, ...]:
+def predictions_of(fits: EffectFits, state: FitState, tests: Sequence[TestFit]) -> tuple[Prediction, ...]:
     """Predicted motions of the held-out tests, with their bands.
 
     Args:
-        search: The search.
+        fits: Study, candidates, priors.
         state: A fit.
         tests: Measured and simulated motions of every test with this fit.
     """
     held = [(test, series) for test in tests if test.use == "holdout" for series in test.series if series.scored]
     if not held:
         return ()
-    covariance = predict_gain(search.study, state.linearisation, search.prior(state.chosen)).covariance
-    slopes, errors = motion_slopes(search, state), relative_errors(tests)
+    covariance = predict_gain(fits.study, state.linearisation, fits.prior(state.chosen)).covariance
+    slopes, errors = motion_slopes(fits, state), relative_errors(tests)
     predictions = []
     for test, series in held:
         mine = slopes[test.id, series.channel][: len(series.measured)]
@@ -66,14 +63,14 @@ def relative_errors(tests: Sequence[TestFit]) -> dict[tuple[bool, str], float]:
     return {key: float(np.sqrt(np.mean(values))) for key, values in squares.items()}
 
 
-def motion_slopes(search: Search, state: FitState) -> dict[tuple[str, str], np.ndarray]:
+def motion_slopes(fits: EffectFits, state: FitState) -> dict[tuple[str, str], np.ndarray]:
     """Slopes of the motions in time along a fit's directions (t, q), by test and motion.
 
     A decay's own initial position, rate and offset are fitted to it whatever the parameters are. Its slopes are the remainder
     after that fit.
     """
-    study = search.study
-    parts = study.time_slopes(state.linearisation.point, state.linearisation.active)
+    study = fits.study
+    parts = study.simulations.time_slopes(state.linearisation.point, state.linearisation.active)
     q, by_motion = len(state.linearisation.active), {}
     if study.decays is not None:
         dofs = study.decays.data.dofs

@@ -3,21 +3,19 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import reduce
 from itertools import islice
 from typing import Any, TypeAlias
 
-import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 
+from calibration.discovery.decay_simulations import DecaySimulations
 from calibration.discovery.frequency_bands import FourierRows
 from calibration.discovery.linearisations import Linearisation, Point, SeaSelection
 from calibration.discovery.residuals import Frame, SeaRecord, decay_residual, decay_slopes, sea_residuals
 from calibration.discovery.sea_slopes import COMPARED_AT_ONCE, Accelerations, sea_slopes
 from calibration.fitting.cores import cores
-from calibration.residuals.decays import DecayData, DecayProblem, padded
 from jaxhydro.interrupts import stoppable_threads
 
 OVERFLOW = 1e100  # motions and slopes from here on are those of a diverging simulation
@@ -32,8 +30,7 @@ class RecordSimulations:
     """Simulations of all records of a campaign, side by side: XLA runs a loop on one core.
 
     Attributes:
-        decays: The decays, or None.
-        decay_size: Numbers of samples and of steps that decays are padded to, so that studies share programs.
+        decays: Simulations of the decays, or None.
         seas: The runs in waves.
         with_fitted: Which runs have a fitted test.
         cuts: Rows of the decays and of every run in waves.
@@ -41,54 +38,12 @@ class RecordSimulations:
         width: Number of directions that are differentiated at a time.
     """
 
-    decays: DecayProblem | None
-    decay_size: tuple[int, int]
+    decays: DecaySimulations | None
     seas: tuple[SeaRecord, ...]
     with_fitted: tuple[bool, ...]
     cuts: tuple[FourierRows, ...]
     directions: np.ndarray
     width: int
-
-    @cached_property
-    def decay_data(self) -> list[DecayData]:
-        """The decays one by one, padded."""
-        if self.decays is None:
-            return []
-        samples, steps = self.decay_size
-        leaves, kind = jax.tree.flatten(padded(self.decays.data, samples, steps))
-        return [jax.tree.unflatten(kind, decay) for decay in zip(*leaves, strict=True)]
-
-    @cached_property
-    def problem_without_data(self) -> DecayProblem:
-        """The problem of the decays without their records: one program serves any number of them."""
-        return eqx.tree_at(lambda problem: problem.data, self.decays, None)
-
-    def of_decay(self, program: Callable[..., Any], where: Any, own: np.ndarray, i: int) -> Any:
-        """Result of a program of a decay, without the padding.
-
-        Args:
-            program: `decay_residual` or `decay_slopes`.
-            where: Its point or frame.
-            own: Own unknowns of the decay (o,).
-            i: Number of the decay.
-        """
-        assert self.decays is not None
-        result = program(self.problem_without_data, where, jnp.asarray(own), self.decay_data[i])
-        samples = self.decays.data.time.shape[1]
-        return jax.tree.map(lambda array: np.asarray(array)[:, :samples], result)
-
-    def compile_decays(self, x: np.ndarray) -> None:
-        """Compile the programs of decays, unless they are; for a thread beside other work.
-
-        Args:
-            x: Any parameter coordinates (p,).
-        """
-        if self.decays is None:
-            return
-        where, own = jnp.asarray(x), np.zeros(3 * len(self.decays.data.dofs))
-        frame = Frame(where, jnp.zeros((len(x), self.width)))
-        for program, at in ((decay_residual, where), (decay_slopes, frame)):
-            self.of_decay(program.prepare, at, own, 0)
 
     def motions(self, point: Point, seas: SeaSelection) -> list[np.ndarray | None]:
         """Simulated minus measured motions in time.
@@ -98,16 +53,16 @@ class RecordSimulations:
         """
         x = jnp.asarray(point.x)
 
-        def of_decay(i: int) -> np.ndarray:
-            return np.asarray(self.of_decay(decay_residual, x, point.own[i], i))
+        def of_decay(decays: DecaySimulations, i: int) -> np.ndarray:
+            return np.asarray(decays.run(decay_residual, x, point.own[i], i))
 
         def of_sea(record: SeaRecord) -> np.ndarray:
             motions = np.asarray(sea_residuals(record, x, jnp.asarray(_step_count(record, seas))))
             return motions.reshape(-1, record.measured.shape[-1])
 
         with stoppable_threads(cores()) as pool:
-            decays, in_seas = self._jobs(pool, of_decay, of_sea, seas)
-            first = [np.concatenate([job.result() for job in decays])] if decays else []
+            in_decays, in_seas = self._jobs(pool, of_decay, of_sea, seas)
+            first = [np.concatenate([job.result() for job in in_decays])] if in_decays else []
             return [*first, *(None if job is None else job.result() for job in in_seas)]
 
     def residual(self, point: Point, seas: SeaSelection) -> np.ndarray:
@@ -174,12 +129,14 @@ class RecordSimulations:
         return whole
 
     def _jobs(
-        self, pool: Executor, decay: Callable[[int], Any], sea: Callable[[SeaRecord], Any], seas: SeaSelection
+        self, pool: Executor, decay: Callable[[DecaySimulations, int], Any], sea: Callable[[SeaRecord], Any], seas: SeaSelection
     ) -> tuple[list[Any], list[Any]]:
         """Parallel work on decays and runs in waves; None: not simulated."""
         selected = [seas == "all" or fitted for fitted in self.with_fitted]
         in_seas = [pool.submit(sea, record) if simulated else None for record, simulated in zip(self.seas, selected)]
-        return [pool.submit(decay, i) for i in range(len(self.decay_data))], in_seas
+        if (decays := self.decays) is None:
+            return [], in_seas
+        return [pool.submit(decay, decays, i) for i in range(len(decays.padded_data))], in_seas
 
     def _gathered(
         self, jobs: Sequence[LinearisationJob], width: int, begin: Callable[[Point, tuple[int, ...], bool], _Slopes]
@@ -219,18 +176,18 @@ class RecordSimulations:
             residual, slopes = (np.asarray(part) for part in parts)
             return residual.reshape(-1, residual.shape[-1]), slopes.reshape(-1, *slopes.shape[-2:])
 
-        def of_decay(i: int) -> tuple[np.ndarray, np.ndarray]:
-            return flat(self.of_decay(decay_slopes, frame, point.own[i], i))
+        def of_decay(decays: DecaySimulations, i: int) -> tuple[np.ndarray, np.ndarray]:
+            return flat(decays.run(decay_slopes, frame, point.own[i], i))
 
         def of_sea(record: SeaRecord) -> tuple[np.ndarray, np.ndarray]:
             received = None if keep is None else keep.setdefault(record.tests, [])
             known_slopes = None if by_state is None else by_state[record.tests]
             return flat(sea_slopes(record, frame, _step_count(record, seas), len(active), workers, received, known_slopes))
 
-        decays, in_seas = self._jobs(pool, of_decay, of_sea, seas)
+        in_decays, in_seas = self._jobs(pool, of_decay, of_sea, seas)
 
         def results() -> list[tuple[np.ndarray, np.ndarray] | None]:
-            each = [job.result() for job in decays]
+            each = [job.result() for job in in_decays]
             first = [(np.concatenate([r for r, _ in each]), np.concatenate([s for _, s in each]))] if each else []
             return [*first, *(None if job is None else job.result() for job in in_seas)]
 

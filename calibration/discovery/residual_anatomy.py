@@ -4,29 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calibration.campaign.manifest_sections import WAVE
 from calibration.discovery.diagnosis import Finding
+from calibration.discovery.effect_fits import EffectFits
+from calibration.discovery.fit_state import FitState
 from calibration.formatting import listed, number
-
-if TYPE_CHECKING:
-    from calibration.discovery.fit_state import FitState
-    from calibration.discovery.search import Search
 
 MIN_RESIDUAL_OVER_NOISE = 1.3  # rms; a smaller residual is at the noise
 
 
-def anatomy(search: Search, state: FitState) -> tuple[Finding, ...]:
+def anatomy(fits: EffectFits, state: FitState) -> tuple[Finding, ...]:
     """Residual of every motion and test, in numbers and words."""
-    study = search.study
+    study = fits.study
     noise = np.array([[series.noise] for series in study.series])
     mean_square, dof = study.mean_squares(state.residual) * study.floor**2 / noise**2, study.dof
     findings = []
     for series, squares, freedom in zip(study.series, mean_square, dof):
-        if series.channel not in search.setup.motions or not freedom.sum():
+        if series.channel not in fits.setup.motions or not freedom.sum():
             continue
         ratio = math.sqrt(float((squares * freedom).sum() / freedom.sum()))
         # noise is in all bands, what is above it in those that are looked at
@@ -49,21 +46,21 @@ def _words(within: float, over: float, bands: Sequence[tuple[float, float, float
     return f"{number(over, 2)} times the noise, most of it {where}"
 
 
-def signature(search: Search, before: FitState, after: FitState) -> tuple[float, str]:
+def signature(fits: EffectFits, before: FitState, after: FitState) -> tuple[float, str]:
     """Fraction of the error's energy that is left, and the remaining residual in words.
 
     Every motion that a test is about counts, relative to its own size and above its floor.
     """
-    study = search.study
-    told = study.main & np.array([series.channel in search.setup.motions for series in study.series])
+    study = fits.study
+    told = study.main & np.array([series.channel in fits.setup.motions for series in study.series])
     spread = np.array([series.spread for series in study.series])
     total, remaining = (float(((state.summary.error / spread)[told] ** 2).sum()) for state in (before, after))
     share = remaining / total if total > 0 else 0.0
     if not (after.summary.squares.sum(axis=1) > (MIN_RESIDUAL_OVER_NOISE**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[
         told
     ].any():
-        fitted = [record for record in search.campaign.records if record.use == "fit"]
-        noise_declared = all(set(record.noise) - {WAVE} <= set(search.campaign.manifest.noise) for record in fitted)
+        fitted = [record for record in fits.campaign.records if record.use == "fit"]
+        noise_declared = all(set(record.noise) - {WAVE} <= set(fits.campaign.manifest.noise) for record in fitted)
         return share, f"white at the {'declared noise level' if noise_declared else 'level of the noise, which was estimated'}"
     by_motion: dict[tuple[str, str], float] = {}
     for series, relative in zip(study.series, np.where(told, after.summary.error / spread, 0.0)):

@@ -9,13 +9,13 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest_sections import IN_WAVES
+from calibration.discovery.campaign_study import study_of
 from calibration.discovery.effects.candidates import Candidate, requested_table_labels, with_candidates, with_drag
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import noticeable_scales
 from calibration.discovery.effects.nearly_known import PRETENSION, STIFFNESS
 from calibration.discovery.effects.plausible_sizes import PlausibleSize, plausible_sizes
 from calibration.discovery.effects.reference_sizes import Seas
-from calibration.discovery.gather import study_of
 from calibration.discovery.linearisations import Prior
 from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import labels_of, space_of

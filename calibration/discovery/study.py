@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from calibration.campaign.records import Record
+from calibration.discovery.decay_simulations import DecaySimulations
 from calibration.discovery.frequency_bands import FourierRows, step_of
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, SeaSelection
 from calibration.discovery.record_simulations import KnownSlopes, LinearisationJob, RecordSimulations
@@ -210,7 +211,8 @@ class Study:
         """Simulations of the records."""
         uses = {series.test: series.use for series in self.series}
         with_fitted = tuple(any(uses[test] == "fit" for test in record.tests) for record in self.seas)
-        return RecordSimulations(self.decays, self.decay_size, self.seas, with_fitted, self.cuts, self.directions, self.width)
+        decays = None if self.decays is None else DecaySimulations(self.decays, self.decay_size, self.width)
+        return RecordSimulations(decays, self.seas, with_fitted, self.cuts, self.directions, self.width)
 
     def motions(self, point: Point, seas: SeaSelection = "all") -> list[np.ndarray | None]:
         """Simulated minus measured motions in time (s, t), of the decays and of every run in waves."""
@@ -235,10 +237,6 @@ class Study:
     ) -> list[Linearisation]:
         """Residual and slopes along neutral candidates. See `RecordSimulations.linearise_neutral`."""
         return self.simulations.linearise_neutral(jobs, by_state, moved, seas)
-
-    def time_slopes(self, point: Point, active: Sequence[int]) -> list[np.ndarray]:
-        """Slopes of all motions in time along some directions. See `RecordSimulations.time_slopes`."""
-        return self.simulations.time_slopes(point, active)
 
     def levels(self, residual: np.ndarray) -> np.ndarray:
         """Mean square over the floor's by series and pool (s, b)."""

@@ -36,14 +36,15 @@ from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, symmetric_inverse
 from calibration.discovery.fit_state import ResidualSummary
 from calibration.discovery.frequency_bands import FourierRows, band_powers, cut_into_bands
-from calibration.discovery.gather import gather_sea
 from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
+from calibration.discovery.measured_series import gather_sea
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 from calibration.discovery.reported_effects import HELD_OUT_ERROR, WAVE_ORDER
-from calibration.discovery.search import AcceptedEffect
+from calibration.discovery.search import AcceptedEffect, Search, SearchRecord
+from calibration.discovery.selection import joint_search
 from calibration.discovery.selection.joint_search import JointSearch
-from calibration.discovery.selection.verified_search import VerifiedSearch
+from calibration.discovery.selection.verification import Verification
 from calibration.discovery.study import Study
 from calibration.results.refusal_sentences import describe_refusal
 
@@ -157,13 +158,9 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
 
     scores = [score(1, drag, good), score(2, friction, good), score(3, memory, small)]
     rejected = {memory.name: Rejected("radiation_memory", "pitch", LITTLE)}
-    search = SimpleNamespace(
-        scores=scores,
-        rejected=rejected,
-        accepted={friction.name: SimpleNamespace(verdict=good)},
-        setup=SimpleNamespace(candidates=[friction, drag, memory]),
-        study=SimpleNamespace(order_hint=""),
-    )
+    accepted: Any = {friction.name: SimpleNamespace(verdict=good)}
+    fits: Any = SimpleNamespace(study=SimpleNamespace(order_hint=""))
+    search = Search(fits, SearchRecord(scores, rejected, accepted=accepted))
     state: Any = SimpleNamespace(chosen=(friction,))
     assert doubted_effects(search, state, errors(), errors()) == {}  # type: ignore[arg-type]
     taken_out = small._replace(bic=350.0, refused=LITTLE)
@@ -175,13 +172,9 @@ def test_what_is_in_doubt_for_what_was_not_fitted():
     """Everything where the held-out error is larger with it, or what acts in the motion that has it."""
     good = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, None)
     drift, friction = Candidate("wave_drift", "pitch", ()), Candidate("coulomb_friction", "surge", ())
-    search = SimpleNamespace(
-        scores=[],
-        rejected={},
-        accepted={one.name: SimpleNamespace(verdict=good) for one in (drift, friction)},
-        setup=SimpleNamespace(candidates=[drift, friction]),
-        study=SimpleNamespace(order_hint=""),
-    )
+    accepted: Any = {one.name: SimpleNamespace(verdict=good) for one in (drift, friction)}
+    fits: Any = SimpleNamespace(study=SimpleNamespace(order_hint=""))
+    search = Search(fits, SearchRecord(accepted=accepted))
     state: Any = SimpleNamespace(chosen=(drift, friction))
     assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {}  # type: ignore[arg-type]
     worse, better = errors(surge=0.38, pitch=0.1), errors(surge=0.1, pitch=0.13)
@@ -189,7 +182,7 @@ def test_what_is_in_doubt_for_what_was_not_fitted():
     assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), worse) == both  # type: ignore[arg-type]
     of_motion = doubted_effects(search, state, errors(surge=0.3, pitch=0.1), better)  # type: ignore[arg-type]
     assert of_motion == {drift.name: HELD_OUT_ERROR}
-    search.study.order_hint = "records have no second order"
+    fits.study.order_hint = "records have no second order"
     assert doubted_effects(search, state, errors(), errors()) == {drift.name: WAVE_ORDER}  # type: ignore[arg-type]
 
 
@@ -320,11 +313,13 @@ def test_an_effect_that_makes_a_test_worse_than_declared_is_refused(worse, refus
         name: AcceptedEffect(1.0, before, None, verdict, (), 1.0, np.zeros(2))
         for name, before in {"memory": state(0.9, worse), "drift": state(0.9, 0.1)}.items()
     }
-    search = SimpleNamespace(study=study, accepted=found)
-    VerifiedSearch.refuse_worsening(search, state(0.9, 0.1), state(0.1, worse))
-    assert [name for name, one in search.accepted.items() if one.verdict.refused] == ([refused] if refused else [])
+    fits: Any = SimpleNamespace(study=study)
+    joint: Any = None
+    record = SearchRecord(accepted=found)
+    Verification(Search(fits, record), joint).refuse_worsening(state(0.9, 0.1), state(0.1, worse))
+    assert [name for name, one in record.accepted.items() if one.verdict.refused] == ([refused] if refused else [])
     if refused:
-        reason = describe_refusal(search.accepted["drift"].verdict.refused)
+        reason = describe_refusal(record.accepted["drift"].verdict.refused)
         left_over = "50.0 % of the motion is left with it, 10.0 % in the baseline"
         assert reason == f"surge of t is followed worse with it ({left_over})"
 
@@ -346,6 +341,8 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
 
     class Effect(NamedTuple):
         name: str
+        effect: str = "memory"
+        dof: str | None = None
 
     @dataclass(frozen=True)
     class State:
@@ -358,24 +355,18 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
         reason = Refusal(RefusalKind.IMPROBABLE, (0.1,)) if refused else None
         return Verdict(float(ord(one.name)), 0.5, True, 50.0, 9.0, 9.0, reason)
 
-    class Scripted(VerifiedSearch):
-        def __init__(self) -> None:
-            self.accepted, self.rejected = {}, {}
-
+    class Scripted(Verification):
         def without_unsupported(self, baseline, reached):
             return reached
 
         def refuse_worsening(self, baseline, reached):
-            assert {one.after.chosen for one in self.accepted.values()} == {reached.chosen}
+            assert {one.after.chosen for one in self.record.accepted.values()} == {reached.chosen}
 
         def refit_all(self, reached):
             return reached
 
         def reject_others(self, reached):
             pass
-
-        def reject(self, one, why, taken_out=None):
-            self.rejected[one.name] = why
 
         def evidence(self, baseline, reached, some):
             tried.append("".join(one.name for one in some))
@@ -386,10 +377,11 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
                 found[one.name] = AcceptedEffect(1.0, without, reached, verdict(one, one.name in now), (), 1.0, np.zeros(2))
             return found
 
-    search = Scripted()
-    found = search.verify(state(""), state("abc"))
+    nothing: Any = None
+    record = SearchRecord()
+    found = Scripted(Search(nothing, record), nothing).run(state(""), state("abc"))
     assert "".join(sorted(one.name for one in found.chosen)) == kept
-    assert tried == passes and set(search.rejected) == set("abc") - set(kept)
+    assert tried == passes and set(record.rejected) == set("abc") - set(kept)
 
 
 @pytest.mark.parametrize(
@@ -403,7 +395,7 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
         (["a", ""], "a", ["", ""]),  # nothing at all: verification decides
     ],
 )
-def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(selected, kept, required):
+def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(monkeypatch, selected, kept, required):
     class Effect(NamedTuple):
         name: str
 
@@ -422,6 +414,7 @@ def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(select
 
     class Scripted(JointSearch):
         def __init__(self) -> None:
+            self.fits: Any = SimpleNamespace(refit_from=lambda state, *_: state)
             self.columns = SimpleNamespace(variants=[Effect(name) for name in names])
             fitted = {one.variants: one for one in map(subset, [*selected, *names])}
             self.selector = SimpleNamespace(fitted=fitted, subset=lambda some: subset("".join(names[i] for i in some)))
@@ -433,17 +426,15 @@ def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(select
             asked.append("".join(sorted(required)))
             return subset(next(rounds))
 
-        def fit_subset(self, state, columns, one, stage, share, *tolerance):
-            return State(tuple(Effect(names[i]) for i in one.variants))
-
         def as_predicted(self, state, one):
             return False
 
-        def refit_all(self, state):
-            return state
+    def fit_subset(fits, state, columns, one, *_):
+        return State(tuple(Effect(names[i]) for i in one.variants))
 
+    monkeypatch.setattr(joint_search, "fit_subset", fit_subset)
     states: Any = [State(())]
-    found = Scripted().search(states, states.append)
+    found = Scripted().run(states, states.append)
     assert "".join(one.name for one in found.chosen) == kept and next(rounds, None) is None
     assert asked == required
 

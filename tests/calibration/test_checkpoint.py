@@ -40,13 +40,13 @@ class Killed(Exception):
 
 
 def fresh(campaign):
-    return Search(campaign, set_up_study(campaign, Options()), lambda *_: None)
+    return Search.of(campaign, set_up_study(campaign, Options()), lambda *_: None)
 
 
 def state_of(search, chosen, seed):
     """A state of random numbers where a fit's would be."""
-    study, random = search.study, np.random.default_rng(seed)
-    rows, series, active = len(study.row_series), len(study.series), search.active(chosen)
+    study, random = search.fits.study, np.random.default_rng(seed)
+    rows, series, active = len(study.row_series), len(study.series), search.fits.active(chosen)
     point = Point(random.normal(size=len(study.start)), random.normal(size=study.own_width.shape))
     own = random.normal(size=(study.spans[-1].stop, study.own_width.shape[1]))
     linearisation = Linearisation(point, tuple(active), random.normal(size=rows), random.normal(size=(rows, len(active))), own)
@@ -61,16 +61,18 @@ def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("campaign")
     campaign = campaign_of(folder, lambda x, v: -500.0 * x**3)
     search = fresh(campaign)
-    first, second = search.setup.candidates[:2]
+    first, second = search.fits.setup.candidates[:2]
     state, before = state_of(search, (first,), 1), state_of(search, (), 2)
-    search.anchor(state.linearisation.point.x)
+    search.fits.anchor(state.linearisation.point.x)
     verdict = Verdict(31.0, 0.4, True, 12.5, math.inf, 1.5, None)
     refused = Refusal(RefusalKind.HELD_OUT_ERROR, (-0.02,), compared=ComparedData.HELD_OUT)
-    search.accepted = {first.name: AcceptedEffect(50.5, before, state, verdict, (second.name,), math.nan, np.arange(2.0))}
-    search.scores = [Score(1, first.effect, first.dof, 50.5, 1, 12.0, 49.0, 0.4, verdict)]
-    search.rejected = {second.name: Rejected(second.effect, second.dof, refused, None)}
-    search.shortlist = [ListedVariant(first.name, {label: 0.1 for label in first.amplitudes})]
-    search.notes = ["a note"]
+    search.record.accepted = {
+        first.name: AcceptedEffect(50.5, before, state, verdict, (second.name,), math.nan, np.arange(2.0))
+    }
+    search.record.scores = [Score(1, first.effect, first.dof, 50.5, 1, 12.0, 49.0, 0.4, verdict)]
+    search.record.rejected = {second.name: Rejected(second.effect, second.dof, refused, None)}
+    search.record.shortlist = [ListedVariant(first.name, {label: 0.1 for label in first.amplitudes})]
+    search.record.notes = ["a note"]
     save_checkpoint(folder / "kept", search, [state], 12.0)
     return SimpleNamespace(folder=folder, campaign=campaign, search=search, state=state, path=folder / "kept")
 
@@ -110,9 +112,9 @@ def test_what_was_reached_is_read_back_to_the_last_bit(written):
     again, told = fresh(written.campaign), []
     (state,) = load_checkpoint(written.path, again, told.append)
     assert not told and same(plain(state), plain(written.state))
-    assert again.earlier == 12.0 and same(again.begun, written.search.begun)
+    assert again.record.earlier == 12.0 and same(again.fits.begun, written.search.fits.begun)
     for name in ("accepted", "scores", "rejected", "notes", "shortlist"):
-        assert same(plain(getattr(again, name)), plain(getattr(written.search, name))), name
+        assert same(plain(getattr(again.record, name)), plain(getattr(written.search.record, name))), name
 
 
 def test_nothing_is_told_where_nothing_was_kept(written, tmp_path):
@@ -253,7 +255,7 @@ def test_other_inputs_start_anew(written, tmp_path, how):
 
 def test_other_options_and_another_model_start_anew(written):
     """A model of one's own, too: its numbers are not in any file."""
-    search = Search(written.campaign, set_up_study(written.campaign, Options(stretching="none")), lambda *_: None)
+    search = Search.of(written.campaign, set_up_study(written.campaign, Options(stretching="none")), lambda *_: None)
     assert load_checkpoint(written.path, search) == []
     model = written.campaign.model
     for label in ("linear_damping.B44", "hydrostatics.C44"):

@@ -18,6 +18,7 @@ from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
 from calibration.commands.simulate_campaign_command import simulate_campaign
+from calibration.discovery.baseline_fit import fit_baseline
 from calibration.discovery.channel_signs import with_signs_reversed
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis_conclusion import conclude
@@ -252,8 +253,8 @@ def test_seas_are_as_the_campaign_states(tmp_path: Path) -> None:
     }
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
     campaign = load_campaign(tmp_path)
-    search = Search(campaign, set_up_study(campaign, options_of(campaign)), lambda *_: None)
-    state = search.fit_baseline()
+    search = Search.of(campaign, set_up_study(campaign, options_of(campaign)), lambda *_: None)
+    state = fit_baseline(search)
     found = conclude(campaign, search, state, state, (), 1.0)
     write_diagnosis(found, tmp_path / "found", figures=False)
     assert simulate_campaign(tmp_path, tmp_path / "seas", calibration=tmp_path / "found")

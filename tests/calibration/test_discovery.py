@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 import jaxhydro as jh
 from calibration import calibrate
 from calibration.campaign.load_campaign import load_campaign
-from calibration.discovery import checkpoint, search
+from calibration.discovery import checkpoint, mass_properties_check
 from calibration.discovery.acceptance import Verdict
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.doubts import abandoned_decays
@@ -24,9 +24,10 @@ from calibration.discovery.effects.catalogue_builder import noticeable_scales
 from calibration.discovery.fit_state import ResidualSummary
 from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.linearisations import Point, Prior
+from calibration.discovery.mass_properties_check import with_mass_properties
 from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE
-from calibration.discovery.search import Search
+from calibration.discovery.search import Search, SearchRecord
 from calibration.discovery.set_up import set_up_study
 from calibration.residuals.wave_options import Options
 from calibration.results.refusal_sentences import describe_refusal
@@ -325,28 +326,25 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         linearisation = SimpleNamespace(point=Point(np.array(x), None), active=(0, 1))
         return SimpleNamespace(linearisation=linearisation, chosen=chosen, likelihood=np.zeros(1))
 
-    monkeypatch.setattr(search, "predict_gain", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
-    monkeypatch.setattr(search, "prior_residuals", away)
+    monkeypatch.setattr(mass_properties_check, "predict_gain", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
+    monkeypatch.setattr(mass_properties_check, "prior_residuals", away)
     after = state([0.1, inertia], (one,))
-    under_way = SimpleNamespace(
+    fits = SimpleNamespace(
         setup=SimpleNamespace(candidates=[one], prior=nearly),
-        accepted={},
-        rejected={},
-        notes=[],
         count=500.0,
-        study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], linearise=lambda *_: None, steps=lambda x: x),
-        active=lambda chosen: [0, 1],
-        refit=lambda *_: after,
+        study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], steps=lambda x: x),
+        refit_from=lambda *_: after,
         prior=lambda chosen: free if chosen else nearly,
         likelihood_gain=lambda *_: 0.0,
         assess=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, Refusal(RefusalKind.NEGLIGIBLE)),
     )
-    found = Search.with_mass_properties(under_way, state([0.1, 0.9 * inertia]))
-    assert (found is after) == told == ("mass_properties" in under_way.accepted)
+    record = SearchRecord()
+    found = with_mass_properties(Search(fits, record), state([0.1, 0.9 * inertia]))
+    assert (found is after) == told == ("mass_properties" in record.accepted)
     if told:
-        evidence = under_way.accepted["mass_properties"].verdict
+        evidence = record.accepted["mass_properties"].verdict
         assert evidence.refused is None and np.isnan(evidence.bic)  # which is of errors
-        assert under_way.notes[0].startswith("inertia pitch is further from the platform file's values")
+        assert record.notes[0].startswith("inertia pitch is further from the platform file's values")
 
 
 def test_a_decay_that_the_seas_take_away_is_said():

@@ -11,12 +11,12 @@ from numpy.testing import assert_allclose
 from test_water_effects import irregular
 
 import jaxhydro as jh
+from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.eliminated_least_squares import deviances, row_weights
 from calibration.discovery.expected_residuals import expected_over_floor, force_spectrum, impedance
 from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.linearisations import MotionSeries, Prior
 from calibration.discovery.residuals import SeaRecord
-from calibration.discovery.search import Search
 from calibration.discovery.set_up import COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_WIDTH, StudySetup, prior_width_of
 from calibration.discovery.study import Study
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
@@ -170,8 +170,8 @@ def test_coefficients_are_anchored_where_the_search_begins(seas: tuple[str, ...]
         seas=seas, space=ParameterSpace(tuple(free)), index=lambda some: [names.index(name) for name in some], steps=lambda x: x
     )
     prior = Prior(np.array([0.0, 0.3, 0.0, 0.0]), np.ones(4))
-    search = Search.__new__(Search)
-    search.study, search.setup = study, StudySetup(study, (), None, names[:2], names[2:3], prior, (), {}, {})  # type: ignore[arg-type]
-    search.anchor(np.array([1.0, 2.0, 3.0, 4.0]))
-    assert_allclose(search.begun, [1.0, 2.0, 3.0, 4.0])
-    assert_allclose(search.setup.prior.mean, [1.0 if seas else 0.0, 0.3, 0.0, 0.0])
+    fits = EffectFits.__new__(EffectFits)
+    fits.study, fits.setup = study, StudySetup(study, (), None, names[:2], names[2:3], prior, (), {}, {})  # type: ignore[arg-type]
+    fits.anchor(np.array([1.0, 2.0, 3.0, 4.0]))
+    assert_allclose(fits.begun, [1.0, 2.0, 3.0, 4.0])
+    assert_allclose(fits.setup.prior.mean, [1.0 if seas else 0.0, 0.3, 0.0, 0.0])

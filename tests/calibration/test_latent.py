@@ -16,11 +16,13 @@ from scipy.integrate import solve_ivp
 from scipy.signal import hilbert
 from test_discovery import NOISE, PLATFORM
 
-from calibration.discovery.gather import highest_frequency
-from calibration.discovery.latent_force.describe_force import described, law_in_words
-from calibration.discovery.latent_force.force_law import LAGGED_TERMS, STILL_WATER_TERMS, RegressionBlock, best_terms, law_of
+from calibration.discovery.campaign_study import highest_frequency
+from calibration.discovery.latent_force.describe_force import described
+from calibration.discovery.latent_force.force_law import RegressionBlock, best_terms, law_of
+from calibration.discovery.latent_force.force_words import law_in_words
 from calibration.discovery.latent_force.recover_force import forces_of, latent_forces, latent_of
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest
+from calibration.discovery.latent_force.term_library import LAGGED_TERMS, STILL_WATER_TERMS
 from calibration.discovery.reported_forces import Law, LawTerm
 from calibration.report.write_report import write_report
 from calibration.result import Series, TestFit
@@ -273,8 +275,8 @@ def test_what_is_written(model, tmp_path):
         for test, _ in made
     )
     campaign = SimpleNamespace(manifest=SimpleNamespace(zero=None), records=[SimpleNamespace(id=test.id) for test in tests])
-    search = SimpleNamespace(campaign=campaign, study=SimpleNamespace(seas=()), setup=SimpleNamespace(motions=("roll",)))
-    latent = latent_of(search, SimpleNamespace(model=model(), tests=tests))
+    fits = SimpleNamespace(campaign=campaign, study=SimpleNamespace(seas=()), setup=SimpleNamespace(motions=("roll",)))
+    latent = latent_of(fits, SimpleNamespace(model=model(), tests=tests))
     assert_allclose({term.name: term.coefficient for term in latent[0].law.terms}["x^3"], -500.0, rtol=0.15)
     folder = write_diagnosis(replace(fake_diagnosis(), verdict="unexplained", effects=(), latent=latent), tmp_path)
     read = json.loads((folder / "diagnosis.json").read_text())

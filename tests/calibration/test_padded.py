@@ -93,7 +93,7 @@ def test_blocks_of_decays_take_the_programs_of_whole_decays(campaign) -> None:
     for one in (study, blocks):
         own = first_guess(one.decay_records, one.decays.data)
         (motions,) = one.motions(Point(np.asarray(one.space.start), np.asarray(own)))
-        expected = one.decays.residual(one.space.start, own[0], one.simulations.decay_data[0])
+        expected = one.decays.residual(one.space.start, own[0], one.simulations.decays.padded_data[0])
         channels, samples = len(one.decays.data.dofs), one.decays.data.time.shape[1]
         np.testing.assert_allclose(motions[:channels], expected[:, :samples], atol=1e-12)
         assert not np.any(expected[:, samples:])

@@ -193,7 +193,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     campaign = load_campaign(folder)
     setup = set_up_study(campaign, OPTIONS)
     study, started = setup.study, np.asarray(setup.study.space.start)
-    search = SimpleNamespace(study=study, setup=setup)
+    fits = SimpleNamespace(study=study, setup=setup)
     kinds = {one.effect: one for one in reversed(setup.candidates)}
     assert {
         "sensor_reference",
@@ -211,7 +211,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     def calibration(place: Point, model: Model, labels: tuple[str, ...]) -> Calibration:
         values = {label: float(model.values[label]) for label in labels}
         parameters = {k: Estimate(k, v, 0.0, "-", "of the test", 0.0, False, True) for k, v in values.items()}
-        tests = tuple(fitted_tests(campaign, search, place))
+        tests = tuple(fitted_tests(campaign, fits, place))
         return Calibration(campaign.manifest.name, model, parameters, tests, True, 1, 1.0, (), (), campaign.platform.name, None)
 
     null = Point(started, np.zeros((0, 0)))
@@ -231,7 +231,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
         places = (moved([effect], *by) for by in (((4.0, 4.0),) if effect == "hysteresis" else ((4.0, 0.0), (1.0, 0.0))))
         place = next(at for at in places if all(np.isfinite(row).all() for row in study.motions(at)))
         step_of[effect] = place.x - started
-        after = fitted_tests(campaign, search, place)
+        after = fitted_tests(campaign, fits, place)
         pairs = [pair for test, first in zip(after, before.tests) for pair in zip(test.series, first.series)]
         if not any(abs(series.relative / other.relative - 1) > 0.01 for series, other in pairs):
             still.add(effect)

@@ -20,7 +20,6 @@ References:
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import jax
 import jax.numpy as jnp
@@ -28,7 +27,8 @@ import numpy as np
 import scipy  # its parts are imported when they are used: that takes a second
 from jaxtyping import Array, Float
 
-from calibration.discovery.gather import highest_frequency
+from calibration.discovery.campaign_study import highest_frequency
+from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.latent_force.describe_force import described
 from calibration.discovery.latent_force.force_law import law_of
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest, filtered
@@ -39,9 +39,6 @@ from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.exported_programs import exported_jit
 from jaxhydro.waves.sea import AbstractSea, StillWater
-
-if TYPE_CHECKING:
-    from calibration.discovery.search import Search
 
 LINES_AVERAGED = 5  # Fourier lines over which the periodogram is averaged
 MAX_HARMONIC = 6.0  # times a decay's own frequency: faster forces are not reconstructed
@@ -196,16 +193,16 @@ def latent_forces(
     return tuple(sorted(described_forces, key=lambda force: DOFS.index(force.motion)))
 
 
-def latent_of(search: Search, fitted: Calibration) -> tuple[LatentForce, ...]:
+def latent_of(fits: EffectFits, fitted: Calibration) -> tuple[LatentForce, ...]:
     """Latent forces of a diagnosis's final model. See `latent_forces`."""
-    from_rest = search.campaign.manifest.zero is not None
-    return latent_forces(fitted.model, list(resampled_tests(search, fitted)), search.setup.motions, from_rest)
+    from_rest = fits.campaign.manifest.zero is not None
+    return latent_forces(fitted.model, list(resampled_tests(fits, fitted)), fits.setup.motions, from_rest)
 
 
-def resampled_tests(search: Search, fitted: Calibration) -> Iterator[ResampledTest]:
+def resampled_tests(fits: EffectFits, fitted: Calibration) -> Iterator[ResampledTest]:
     """Tests on even clocks; in waves on the clock of their sea."""
-    seas = {name: sea for sea in search.study.seas for name in sea.tests}
-    records = {record.id: record for record in search.campaign.records}
+    seas = {name: sea for sea in fits.study.seas for name in sea.tests}
+    records = {record.id: record for record in fits.campaign.records}
     for test in fitted.tests:
         step, first, last = float(np.median(np.diff(test.time))), float(test.time[0]), float(test.time[-1])
         wave, sea, record = None, seas.get(test.id), records[test.id]
