@@ -26,6 +26,7 @@ class TestDraft:
         repeats: Number of tests of this kind and motion.
         left_out: channel -> column of angles beyond 90 degrees, which are not used.
         still: Time in which the platform rests before it is pushed, in the file's unit.
+        window: Longest part without a gap, in the file's unit, where only that part is used.
     """
 
     __test__ = False  # not for pytest
@@ -39,6 +40,7 @@ class TestDraft:
     repeats: int = 1
     left_out: Columns = field(default_factory=dict)
     still: tuple[float, float] | None = None
+    window: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -79,10 +79,12 @@ def _drafts(
         values = {channel: values_of(table, guess) for channel, guess in used.items()}
         motions = {dof: values[dof] for dof in DOFS if dof in values}
         guess = guess_kind(values["time"], motions, values.get(WAVE), length, motion_in(file.stem))
+        unit = SI["time"][used["time"].unit]
+        window = None if guess.window is None else (guess.window[0] / unit, guess.window[1] / unit)
         id = _id(file.stem, [test.id for test in tests])
         out_of_range = {name: guesses[name] for name in out}
-        still = still_time(values["time"] / SI["time"][used["time"].unit], motions, guess.degree_of_freedom)
-        tests.append(TestDraft(id, file.name, guess, "fit", used, left_out=out_of_range, still=still))
+        still = still_time(values["time"] / unit, motions, guess.degree_of_freedom)
+        tests.append(TestDraft(id, file.name, guess, "fit", used, left_out=out_of_range, still=still, window=window))
     return tests
 
 

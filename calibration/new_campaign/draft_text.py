@@ -91,7 +91,8 @@ def kind_reason(test: TestDraft) -> str:
     if guess.by_name:
         return f"{guess.degree_of_freedom} by the name of the file; the record shows another motion more"
     water = "still water" if guess.still_wave else "no wave column"
-    return f"{water}; {guess.degree_of_freedom} dies out"
+    part = "" if guess.window is None else " in the longest part without a gap"
+    return f"{water}; {guess.degree_of_freedom} dies out{part}"
 
 
 def _aligned(lines: Iterable[tuple[str, str]]) -> str:
@@ -150,6 +151,8 @@ def _test_line(test: TestDraft) -> tuple[str, str]:
     parts = [f"id: {yaml_scalar(test.id)}", f"kind: {guess.kind}"]
     if guess.degree_of_freedom is not None:
         parts.append(f"degree_of_freedom: {guess.degree_of_freedom}")
+    if test.window is not None:
+        parts.append(f"window: [{test.window[0]:.10g}, {test.window[1]:.10g}]")
     line = f"  - {{{', '.join((*parts, f'file: {yaml_scalar(test.file)}', f'use: {test.use}'))}"
     if not test.columns:
         return f"{line}}}", "CHECK: put this file here"

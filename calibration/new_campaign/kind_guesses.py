@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import ndimage, stats
 
+from calibration.campaign.checked_series import GAP_STEPS
 from calibration.campaign.manifest_sections import Kind, quantity
 from calibration.campaign.release import free_motion
 from calibration.campaign.series import valid_values
@@ -33,12 +34,14 @@ class KindGuess:
         degree_of_freedom: Motion that was released, of a decay.
         by_name: Whether the motion is from the name of the file, and the record shows another motion more.
         still_wave: Whether the file has a wave column, and no waves come in.
+        window: Times (s) of the longest part without a gap, where a decay is seen in that part only.
     """
 
     kind: Kind
     degree_of_freedom: str | None = None
     by_name: bool = False
     still_wave: bool = False
+    window: tuple[float, float] | None = None
 
 
 def guess_kind(
@@ -64,13 +67,37 @@ def guess_kind(
     rows = rows[np.diff(np.maximum.accumulate(time[rows]), prepend=-np.inf) > 0]
     time = time[rows]
     motions = {name: values[rows] for name, values in motions.items() if np.isfinite(values[rows]).all()}
+    whole = _guess(time, motions, None if wave is None else wave[rows], length, named)
+    steps = np.diff(time)
+    if (
+        whole.kind != "static"
+        or len(time) < MIN_ROWS
+        or not (gaps := np.flatnonzero(steps > GAP_STEPS * np.median(steps))).size
+    ):
+        return whole
+    ends = [0, *(gaps + 1), len(time)]
+    part = max((slice(*ends[i : i + 2]) for i in range(len(ends) - 1)), key=lambda part: part.stop - part.start)
+    guess = _guess(
+        time[part],
+        {name: values[part] for name, values in motions.items()},
+        None if wave is None else wave[rows][part],
+        length,
+        named,
+    )
+    return replace(guess, window=(float(time[part][0]), float(time[part][-1]))) if guess.kind == "decay" else whole
+
+
+def _guess(
+    time: np.ndarray, motions: Mapping[str, np.ndarray], wave: np.ndarray | None, length: float, named: str | None
+) -> KindGuess:
+    """The kind of a test from valid rows. See `guess_kind`."""
     if len(time) < MIN_ROWS or not motions:
         return KindGuess("static")
     released, dying = _released(time, motions, length)
     dies_out = released in dying
     if wave is not None:
-        valid = valid_values(wave[rows])
-        wave = np.where(valid, wave[rows], float(np.mean(wave[rows][valid])) if valid.any() else 0.0)
+        valid = valid_values(wave)
+        wave = np.where(valid, wave, float(np.mean(wave[valid])) if valid.any() else 0.0)
         if not _is_still(time, wave, motions, dies_out):
             middle = wave[len(wave) // 4 : 3 * len(wave) // 4]
             regular = float(stats.kurtosis(middle, fisher=False)) < MAX_REGULAR_KURTOSIS

@@ -328,3 +328,14 @@ def test_what_is_refused_leaves_nothing(tmp_path: Path) -> None:
 def test_an_empty_folder_is_filled(tmp_path: Path) -> None:
     run("init", tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["campaign.yaml", "platform.yaml"]
+
+
+def test_a_decay_with_a_gap_is_used_beside_it(tmp_path: Path) -> None:
+    """A hold, a release, and a gap: the gap would hide where the free motion begins."""
+    time = np.arange(0.0, 200.0, 0.1)
+    moved = np.maximum(time - 60.0, 0.0)
+    table = pd.DataFrame({"time_s": time, "heave_m": 2 * np.exp(-0.02 * moved) * np.cos(0.6 * moved)})
+    table[(time < 63.0) | (time > 69.0)].to_csv(tmp_path / "run.csv", index=False)
+    (made,) = campaign(tmp_path / "made", tmp_path / "run.csv", platform="ship-section").records
+    assert (made.kind, made.degree_of_freedom, made.use) == ("decay", "heave", "fit") and made.time[0] > 69.0
+    assert "dies out in the longest part without a gap" in (tmp_path / "made" / "campaign.yaml").read_text()
