@@ -14,7 +14,7 @@ from calibration.report.web_page import embedded, inputs_table, render, written_
 from calibration.results.read_result import file_error
 from calibration.results.result_folder import FIGURES_FOLDER, MOTION_FILE
 from calibration.vocabulary import Rows
-from jaxhydro.analysis.sea_statistics import MIN_RANGE, summary, tables
+from jaxhydro.analysis.sea_statistics import MIN_RANGE, moves, summary, tables
 from jaxhydro.environment import DOFS
 
 MOTIONS, STATISTICS = "motion.csv", "statistics.json"
@@ -131,8 +131,8 @@ def page(folder: Path) -> str:
         date=written_on(folder / MOTION_FILE),
         sentence=response_sentence(motion_summary.conditions, response) if response else simulation_sentence(motion_summary),
         span=f"{window[0]:g} to {window[1]:g} s",
-        statistics=(statistics[0], [row for row in statistics[1] if not _is_still(row[0], results)]),
-        still=listed(still) if (still := [name for name in results["statistics"] if _is_still(name, results)]) else "",
+        statistics=(statistics[0], [row for row in statistics[1] if moves(results, row[0].split(" ")[0])]),
+        still=listed(still) if (still := [name for name in results["statistics"] if not moves(results, name)]) else "",
         bands=bands,
         response=_response_table(response),
         conditions=(("Property", "Value"), list(_properties(about, data))),
@@ -151,12 +151,6 @@ def _results(data: xr.Dataset, folder: Path) -> dict[str, Any]:
     values = {str(name): data["simulated"].sel(channel=name).values for name in data["channel"].values}
     waves = {"wave": data["wave"].values} if "wave" in data else {}
     return summary(data["time"].values, {**waves, **values}, None) | {"bands": {}}
-
-
-def _is_still(heading: str, results: Mapping[str, Any]) -> bool:
-    """Whether a channel, named as in a table of statistics, does not move."""
-    channel = results["statistics"][heading.split(" ")[0]]
-    return max(abs(channel["minimum"]), abs(channel["maximum"])) <= MIN_RANGE
 
 
 class RegularResponse(NamedTuple):

@@ -13,6 +13,7 @@ from jaxhydro.units import unit_of
 from jaxhydro.waves.sea_state import peak_period
 
 MIN_RANGE = 1e-9  # m, deg: what moves less does not move
+MIN_PRINTED_SHARE = 1e-6  # of the largest value of the same unit: smaller motions are rounding, printed as 0
 PRINTED_STATISTICS = (
     "mean",
     "standard_deviation",
@@ -24,8 +25,8 @@ PRINTED_STATISTICS = (
 PRINTED_HEADINGS = (
     "Mean",
     "Standard deviation",
-    "Least",
-    "Largest",
+    "Minimum",
+    "Maximum",
     "Significant double amplitude",
     "Zero-crossing period (s)",
 )
@@ -99,13 +100,30 @@ def _bands(time: np.ndarray, channel: str, values: np.ndarray, peak_period: floa
     return energies
 
 
+def moves(document: Mapping[str, Any], channel: str) -> bool:
+    """Whether a channel of `summary` moves by more than rounding."""
+
+    def extent(numbers: Mapping[str, Any]) -> float:
+        return max(abs(numbers["minimum"] or 0.0), abs(numbers["maximum"] or 0.0))
+
+    mine = document["statistics"][channel]
+    alike = [extent(numbers) for numbers in document["statistics"].values() if numbers["unit"] == mine["unit"]]
+    return extent(mine) > max(MIN_RANGE, MIN_PRINTED_SHARE * max(alike))
+
+
 def tables(document: Mapping[str, Any]) -> tuple[tuple[tuple[str, ...], list[tuple[str, ...]]], ...]:
     """Headings and rows of the two printed tables: statistics, and band energies of every moving channel."""
     rows, energy = [], []
     for channel, numbers in document["statistics"].items():
-        rows.append((f"{channel} ({numbers['unit']})", *(_number(numbers[name]) for name in PRINTED_STATISTICS)))
+        moving = moves(document, channel)
+        *of_motion, period = PRINTED_STATISTICS
+        printed = [
+            *(_number(numbers[name]) if moving else "0" for name in of_motion),
+            _number(numbers[period] if moving else None),
+        ]
+        rows.append((f"{channel} ({numbers['unit']})", *printed))
         deviation = numbers["standard_deviation"]
-        if not deviation or channel not in document["bands"]:
+        if not moving or not deviation or channel not in document["bands"]:
             continue
         cells = []
         for name in ("low_frequency", "wave_frequency"):
