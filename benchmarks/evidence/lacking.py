@@ -68,7 +68,7 @@ def work(name: str) -> dict[str, Any]:
     folder.mkdir(parents=True, exist_ok=True)
     if not (folder / DIAGNOSIS_FILE).exists():
         campaign = load_campaign(campaign_of(name))
-        write_diagnosis(diagnose(campaign.model, campaign, kept=folder / CHECKPOINT_FILE), folder, figures=False)
+        write_diagnosis(diagnose(campaign.model, campaign, checkpoint=folder / CHECKPOINT_FILE), folder, figures=False)
         (folder / CHECKPOINT_FILE).unlink(missing_ok=True)
     return numbers(folder, name)
 

@@ -186,7 +186,7 @@ def diagnosed(part: str) -> dict[str, Any]:
 
     shown = [-1.0]
     checkpoint = CAMPAIGN / f".{part}-under-way"
-    result = diagnose(campaign.model, campaign, progress=show, kept=checkpoint)
+    result = diagnose(campaign.model, campaign, progress=show, checkpoint=checkpoint)
     checkpoint.unlink(missing_ok=True)
     motions = {}
     for before, after in zip(result.baseline.tests, result.augmented.tests):

@@ -43,7 +43,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     campaign = load(path, out, lambda c: calibrations.count_tests(c, ("decay", *IN_WAVES)))
     try:
         with progress() as show:
-            result = diagnose(campaign.model, campaign, progress=show, kept=out / CHECKPOINT_FILE)
+            result = diagnose(campaign.model, campaign, progress=show, checkpoint=out / CHECKPOINT_FILE)
     except Diverged as error:
         complain(f"{error}; nothing was written")
         return False

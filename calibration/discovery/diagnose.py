@@ -39,7 +39,7 @@ def diagnose(
     candidates: Sequence[Candidate] = (),
     progress: Callable[[Progress], None] | None = None,
     options: Options | None = None,
-    kept: Path | None = None,
+    checkpoint: Path | None = None,
 ) -> Diagnosis:
     """Find the effects that a model lacks to explain a campaign.
 
@@ -52,7 +52,7 @@ def diagnose(
         candidates: The user's own candidate effects, beside the catalogue.
         progress: Called with the stage of the search.
         options: How seas are reconstructed; by default as the campaign states.
-        kept: Checkpoint file. An existing one of the same campaign, options, program and libraries is resumed.
+        checkpoint: Checkpoint file. An existing one of the same campaign, options, program and libraries is resumed.
 
     Returns:
         The baseline fit, the effects found with their evidence, and the augmented model.
@@ -79,15 +79,15 @@ def diagnose(
 
     def reach(state: FitState) -> None:
         states.append(state)
-        if kept is not None:
-            save_checkpoint(kept, search, states, spent())
+        if checkpoint is not None:
+            save_checkpoint(checkpoint, search, states, spent())
 
     say("reading the records", 0.0)
 
     def begun_with(campaign: Campaign) -> Search:
         how = options_of(campaign) if options is None else options
         search = Search.of(campaign, set_up_study(campaign, how, candidates), say)
-        states.extend([] if kept is None else load_checkpoint(kept, search, unusable.append))
+        states.extend([] if checkpoint is None else load_checkpoint(checkpoint, search, unusable.append))
         return search
 
     search = begun_with(campaign)

@@ -363,7 +363,7 @@ def told_in(campaign, path, stop_at="", **how):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            found = diagnose(campaign.model, campaign, progress=progress, kept=path, **how)
+            found = diagnose(campaign.model, campaign, progress=progress, checkpoint=path, **how)
         except Killed:
             found = None
     return found, seen, [str(one.message) for one in caught if issubclass(one.category, CheckpointWarning)]

@@ -228,9 +228,9 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
             raise RuntimeError("killed")
 
     with pytest.raises(RuntimeError, match="killed"):
-        found_in(campaign, progress=killed, kept=path)
+        found_in(campaign, progress=killed, checkpoint=path)
     begun = monotonic()
-    found = found_in(campaign, progress=lambda progress: seen.append(progress.stage), kept=path)
+    found = found_in(campaign, progress=lambda progress: seen.append(progress.stage), checkpoint=path)
     assert found.seconds > monotonic() - begun  # with what the first run took
     assert not any(stage.startswith(("fitting the baseline", "round 1")) for stage in seen)
     assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]

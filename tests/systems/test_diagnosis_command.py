@@ -67,7 +67,7 @@ def searching(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPath
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.getbasetemp() / "cache"))
     outcome: dict[str, Any] = {}
 
-    def diagnose(model, campaign, *, progress=None, options=None, kept=None):
+    def diagnose(model, campaign, *, progress=None, options=None, checkpoint=None):
         progress(Progress("reading the records", 0, float("nan"), 0.0, "-2 ln L"))
         progress(Progress("scoring", 1, 812.0, 0.4, "-2 ln L"))
         if isinstance(outcome["it"], BaseException):
