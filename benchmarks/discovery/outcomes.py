@@ -44,7 +44,7 @@ def full_name(claim: ClaimedEffect) -> str:
 
 def named_effects(answer: Answer) -> list[str]:
     """Full names of the effects that an answer names, in its order."""
-    return [full_name(one) for one in answer.effects]
+    return [full_name(claim) for claim in answer.effects]
 
 
 def outcome(case: Case, answer: Answer | None) -> Outcome:
@@ -55,12 +55,12 @@ def outcome(case: Case, answer: Answer | None) -> Outcome:
         return Outcome.NOTHING if answer.verdict == "nothing_missing" else Outcome.UNEXPLAINED
     if not case.effect:
         return Outcome.FALSE_ALARM
-    effects, sets = named_effects(answer), [one.indistinguishable_from for one in answer.effects]
+    effects, sets = named_effects(answer), [claim.indistinguishable_from for claim in answer.effects]
     if len(case.effects) == 2:
-        named = sum(one in effects for one in case.effects)
+        named = sum(effect in effects for effect in case.effects)
         if named == 2:
             return Outcome.NAMED
-        if set(case.effects) <= {name for some in sets for name in some} | set(effects):
+        if set(case.effects) <= {name for names in sets for name in names} | set(effects):
             return Outcome.IN_SET
         return Outcome.PART if named else Outcome.ANOTHER
     if effects[0] == case.effect:
@@ -87,7 +87,7 @@ def outside_answers(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Ans
     outside = [case for case in outcomes if case.effect in OUTSIDE and case.strength == strength]
     named = [case for case in outside if outcomes[case] == Outcome.ANOTHER]
     errors = [answers[case].held_out_error for case in named]
-    lower = sum(one is not None and one.final < one.baseline for one in errors)
+    lower = sum(error is not None and error.final < error.baseline for error in errors)
     return {
         "not seen": sum(outcomes[case] in (Outcome.NOTHING, Outcome.NO_ANSWER) for case in outside),
         "unexplained": sum(outcomes[case] == Outcome.UNEXPLAINED for case in outside),
@@ -135,21 +135,21 @@ class Tally(NamedTuple):
             ratios: Held-out errors over those with nothing missing, by case. See `error_ratios`.
             strength: The strength.
         """
-        known = [case for case in outcomes if case.effect in EFFECTS and case.strength == strength]
+        catalogued = [case for case in outcomes if case.effect in EFFECTS and case.strength == strength]
         nothing_missing = [case for case in outcomes if not case.effect]
         pairs = [case for case in outcomes if case.effect in PAIRS]
         outside = outside_answers(outcomes, answers, strength)
 
-        def counted(some: Sequence[Case], *which: Outcome) -> Share:
-            return Share(sum(outcomes[case] in which for case in some), len(some))
+        def counted(cases: Sequence[Case], *which: Outcome) -> Share:
+            return Share(sum(outcomes[case] in which for case in cases), len(cases))
 
-        speaking = [case for case in known if outcomes[case] in (Outcome.NAMED, Outcome.IN_SET, Outcome.ANOTHER)]
-        held = [case for case in known if case in ratios]
+        speaking = [case for case in catalogued if outcomes[case] in (Outcome.NAMED, Outcome.IN_SET, Outcome.ANOTHER)]
+        held = [case for case in catalogued if case in ratios]
         near = {case for case in held if ratios[case] <= MAX_ERROR_RATIO}
         exact = {case for case in held if set(named_effects(answers[case])) == set(case.effects)}
         return cls(
-            counted(known, Outcome.NAMED),
-            counted(known, Outcome.NAMED, Outcome.IN_SET),
+            counted(catalogued, Outcome.NAMED),
+            counted(catalogued, Outcome.NAMED, Outcome.IN_SET),
             counted(speaking, Outcome.NAMED, Outcome.IN_SET),
             Share(len(near), len(held)),
             Share(len(near | exact), len(held)),
@@ -168,7 +168,7 @@ def error_ratios(answers: Mapping[Case, Answer], floors: Mapping[Case, float] | 
         answers: Answers by case.
         floors: Errors with nothing missing to take instead, by case.
     """
-    errors = {case: one.held_out_error.final for case, one in answers.items() if one.held_out_error is not None}
+    errors = {case: answer.held_out_error.final for case, answer in answers.items() if answer.held_out_error is not None}
     floor = {case.seed: error for case, error in errors.items() if not case.effect}
     floor_of = {case: floor[case.seed] for case in errors if case.seed in floor} | dict(floors or {})
     return {case: errors[case] / floor_of[case] for case in errors if case.effect and floor_of.get(case, 0.0) > 0}
@@ -181,26 +181,26 @@ class ReliabilityBin(NamedTuple):
         lower: Lower edge.
         upper: Upper edge.
         mean: Mean probability; None without claims.
-        there: Claims whose effect is missing, of all.
+        missing: Claims whose effect is missing, of all.
     """
 
     lower: float
     upper: float
     mean: float | None
-    there: Share
+    missing: Share
 
 
 def reliability(answers: Mapping[Case, Answer]) -> list[ReliabilityBin]:
     """How often effects of a probability are missing, in bins; effects named and considered count alike."""
     claims = [
-        (one.probability, full_name(one) in case.effects)
+        (claim.probability, full_name(claim) in case.effects)
         for case, answer in answers.items()
-        for one in (*answer.effects, *answer.considered)
-        if one.probability is not None
+        for claim in (*answer.effects, *answer.considered)
+        if claim.probability is not None
     ]
-    found = []
+    bins = []
     for lower, upper in pairwise(PROBABILITY_BINS):
-        inside = [(p, there) for p, there in claims if lower <= p < upper or p == upper == 1.0]
+        inside = [(p, missing) for p, missing in claims if lower <= p < upper or p == upper == 1.0]
         mean = sum(p for p, _ in inside) / len(inside) if inside else None
-        found.append(ReliabilityBin(lower, upper, mean, Share(sum(there for _, there in inside), len(inside))))
-    return found
+        bins.append(ReliabilityBin(lower, upper, mean, Share(sum(missing for _, missing in inside), len(inside))))
+    return bins

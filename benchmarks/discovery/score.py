@@ -53,12 +53,12 @@ def score(folder: Path, path: Path, half: str | None = None, answered_only: bool
         InputError: The folder or the file has mistakes, or an answer is to no campaign of the folder.
     """
     index, file = read_index(folder), read_answers(path)
-    every = {case.public_name: case for case in cases_in(folder)}
-    answers = answers_by_case(file, every, path)
-    chosen = [case for case in every.values() if half in (None, case.half) and (case in answers or not answered_only)]
+    cases = {case.public_name: case for case in cases_in(folder)}
+    answers = answers_by_case(file, cases, path)
+    chosen = [case for case in cases.values() if half in (None, case.half) and (case in answers or not answered_only)]
     if not any(case in answers for case in chosen):
-        found = f"none for a campaign{f' of the half {half!r}' if half else ''}"
-        raise InputError(str(path), [Problem("campaigns", "answers", found)])
+        none = f"none for a campaign{f' of the half {half!r}' if half else ''}"
+        raise InputError(str(path), [Problem("campaigns", "answers", none)])
     answers = {case: answers[case] for case in chosen if case in answers}
     outcomes = {case: outcome(case, answers.get(case)) for case in chosen}
     return {
@@ -69,23 +69,23 @@ def score(folder: Path, path: Path, half: str | None = None, answered_only: bool
         "answered": len(answers),
         "table": table_of(outcomes, answers),
         "reliability": [
-            {"from": one.lower, "to": one.upper, "mean": one.mean, "there": one.there.count, "of": one.there.of}
-            for one in reliability(answers)
+            {"from": row.lower, "to": row.upper, "mean": row.mean, "there": row.missing.count, "of": row.missing.of}
+            for row in reliability(answers)
         ],
         "outcomes": {case.public_name: str(outcomes[case]) for case in sorted(chosen, key=lambda case: case.public_name)},
     }
 
 
-def answers_by_case(file: AnswerFile, every: Mapping[str, Case], path: Path) -> dict[Case, Answer]:
+def answers_by_case(file: AnswerFile, cases: Mapping[str, Case], path: Path) -> dict[Case, Answer]:
     """Answers by case. Raises InputError for names that are no campaign of the folder."""
     problems = [
-        Problem(f"campaigns.{name}", "the name of a campaign folder", repr(name), suggest(name, every))
+        Problem(f"campaigns.{name}", "the name of a campaign folder", repr(name), suggest(name, cases))
         for name in file.campaigns
-        if name not in every
+        if name not in cases
     ]
     if problems:
         raise InputError(str(path), problems)
-    return {every[name]: answer for name, answer in file.campaigns.items()}
+    return {cases[name]: answer for name, answer in file.campaigns.items()}
 
 
 def rows(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> list[Row]:
@@ -96,29 +96,29 @@ def rows(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> li
     tally = tallies["middle"]
 
     def by_strength(value: Callable[[Tally], Share]) -> dict[str, Share]:
-        return with_all({name: value(one) for name, one in tallies.items()})
+        return with_all({name: value(tally) for name, tally in tallies.items()})
 
     def with_all(cells: dict[str, Share]) -> dict[str, Share]:
-        return cells | {"all": Share(sum(one.count for one in cells.values()), sum(one.of for one in cells.values()))}
+        return cells | {"all": Share(sum(share.count for share in cells.values()), sum(share.of for share in cells.values()))}
 
     def of_outside(*keys: str) -> dict[str, Share]:
-        return with_all({name: Share(sum(one[key] for key in keys), sum(one.values())) for name, one in outside.items()})
+        return with_all({name: Share(sum(n[key] for key in keys), sum(n.values())) for name, n in outside.items()})
 
     def of_kinds(kinds: Sequence[str], which: Outcome) -> dict[str, Share]:
-        known = {name: [c for c in outcomes if c.effect in kinds and c.strength == s] for s, name in STRENGTHS.items()}
-        return with_all({name: Share(sum(outcomes[c] == which for c in some), len(some)) for name, some in known.items()})
+        asked = {name: [c for c in outcomes if c.effect in kinds and c.strength == s] for s, name in STRENGTHS.items()}
+        return with_all({name: Share(sum(outcomes[c] == which for c in cases), len(cases)) for name, cases in asked.items()})
 
-    minutes = [one.minutes for one in answers.values() if one.minutes is not None]
+    minutes = [answer.minutes for answer in answers.values() if answer.minutes is not None]
     quotient = {name: _middle([r for c, r in ratios.items() if c.strength == s]) for s, name in STRENGTHS.items()}
-    every: list[Row] = [
+    table: list[Row] = [
         Row("answered", "campaigns answered", {"all": Share(len(answers), len(outcomes))}),
-        Row("named_first", "missing effect named first", by_strength(lambda one: one.named)),
+        Row("named_first", "missing effect named first", by_strength(lambda tally: tally.named)),
         Row(
             "named_or_in_set",
             "the same, or named later, or indistinguishable from the first",
-            by_strength(lambda one: one.listed),
+            by_strength(lambda tally: tally.listed),
         ),
-        Row("right_where_named", "the same, of the campaigns where an effect is named", by_strength(lambda one: one.right)),
+        Row("right_where_named", "the same, of the campaigns where an effect is named", by_strength(lambda tally: tally.right)),
         Row("called_another", "other effects named instead", of_kinds(EFFECTS, Outcome.ANOTHER)),
         Row("not_seen", "nothing said to be missing", of_kinds(EFFECTS, Outcome.NOTHING)),
         Row("unexplained", "said unexplained", of_kinds(EFFECTS, Outcome.UNEXPLAINED)),
@@ -128,18 +128,18 @@ def rows(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> li
         Row("outside_unexplained", "outside the catalogue: said unexplained", of_outside("unexplained")),
         Row("outside_answered", "the same, or the held-out error falls", of_outside("unexplained", "lower")),
         Row("outside_not_seen", "outside the catalogue: nothing said", of_kinds(OUTSIDE, Outcome.NOTHING)),
-        *[_reliability_row(one) for one in reliability(answers)],
+        *[_reliability_row(row) for row in reliability(answers)],
         Row("held_out_ratio", "held-out error over that with nothing missing (median)", _present(quotient)),
         Row("minutes_median", "minutes (median)", _present({"all": _middle(minutes)})),
         Row("minutes_largest", "minutes (largest)", _present({"all": max(minutes, default=None)})),
     ]
-    kept = [row._replace(cells={k: v for k, v in row.cells.items() if not isinstance(v, Share) or v.of}) for row in every]
-    return [row for row in kept if row.cells]
+    filled = [row._replace(cells={k: v for k, v in row.cells.items() if not isinstance(v, Share) or v.of}) for row in table]
+    return [row for row in filled if row.cells]
 
 
-def _reliability_row(one: ReliabilityBin) -> Row:
-    text = f"probability {one.lower:g} to {one.upper:g}: effects that are missing"
-    return Row(f"probability_{one.lower:g}_{one.upper:g}", text, {"all": one.there})
+def _reliability_row(row: ReliabilityBin) -> Row:
+    text = f"probability {row.lower:g} to {row.upper:g}: effects that are missing"
+    return Row(f"probability_{row.lower:g}_{row.upper:g}", text, {"all": row.missing})
 
 
 def _middle(values: Sequence[float]) -> float | None:
@@ -151,7 +151,7 @@ def _present(cells: Mapping[str, float | None]) -> dict[str, Share | float]:
 
 
 def _jsonable(cells: Mapping[str, Share | float]) -> dict[str, Any]:
-    return {name: one._asdict() if isinstance(one, Share) else one for name, one in cells.items()}
+    return {name: cell._asdict() if isinstance(cell, Share) else cell for name, cell in cells.items()}
 
 
 def table_of(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> dict[str, dict[str, Any]]:

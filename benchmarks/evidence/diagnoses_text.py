@@ -90,7 +90,7 @@ def shortfalls(said: Mapping[Case, Outcome], answers: Mapping[Case, Answer], rat
         (tally.both, BOTH, "both of two found"),
         (tally.told, 1.0, f"held-out error within {MAX_ERROR_RATIO} times that of a model that was told the truth"),
         (answered, OUTSIDE_ANSWERED, "outside the catalogue unexplained, or answered with a law that helps"),
-        (reliability(answers)[-1].there, SURE, "effects of a probability from 0.9 that are missing"),
+        (reliability(answers)[-1].missing, SURE, "effects of a probability from 0.9 that are missing"),
     )
     for share, goal, words in goals:
         if share.count < goal * share.of:
