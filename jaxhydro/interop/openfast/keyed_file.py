@@ -35,7 +35,7 @@ class KeyedFile:
     path: Path
     lines: list[str]
     absent: dict[str, str] = field(default_factory=dict)
-    _places: dict[str, int] = field(default_factory=dict)
+    _indices: dict[str, int] = field(default_factory=dict)
     _keys: dict[int, str] = field(default_factory=dict)
     _used: set[int] = field(default_factory=set)
 
@@ -50,7 +50,7 @@ class KeyedFile:
                 continue
             after = next((w for w in words[1:] if math.isnan(to_number(w)) and w[0] not in "\"'"), "")
             if _KEY.fullmatch(after):
-                self._places.setdefault(after.lower(), i)
+                self._indices.setdefault(after.lower(), i)
                 self._keys[i] = after
 
     @property
@@ -62,6 +62,10 @@ class KeyedFile:
         """Words of a line; quoted text is one."""
         return _WORD.findall(self.lines[index]) if index < len(self.lines) else []
 
+    def _text(self, index: int) -> str:
+        """What a line says, for an error."""
+        return shown(self.lines[index].strip()) if index < len(self.lines) else "the end of the file"
+
     def wrong(self, index: int | None, expected: str, found: str, hint: str = "", key: str = "") -> InputError:
         """The error of a line, or of the file."""
         where = f"line {index + 1}" if index is not None else ""
@@ -69,7 +73,7 @@ class KeyedFile:
 
     def has(self, key: str) -> bool:
         """Whether this version of the file has a key."""
-        return key.lower() in self._places
+        return key.lower() in self._indices
 
     def line_of(self, key: str) -> int:
         """Index of the line of a key.
@@ -79,7 +83,7 @@ class KeyedFile:
         """
         if not self.has(key):
             raise self.wrong(None, f"a line with a value and {key}", "none", key=key)
-        index = self._places[key.lower()]
+        index = self._indices[key.lower()]
         self._used.add(index)
         return index
 
@@ -160,8 +164,7 @@ class KeyedFile:
         values = [[to_number(word) for word in self.words(index + i)[:columns]] for i in range(rows)]
         for i, row in enumerate(values):
             if len(row) < columns or not np.isfinite(row).all():
-                found = shown(self.lines[index + i].strip()) if index + i < len(self.lines) else "the end of the file"
-                raise self.wrong(index + i, f"row {i + 1} of {rows} of {key}, {columns} numbers", found)
+                raise self.wrong(index + i, f"row {i + 1} of {rows} of {key}, {columns} numbers", self._text(index + i))
         self._used.update(range(index, index + rows))
         return np.array(values)
 
@@ -182,19 +185,14 @@ class KeyedFile:
         if key is None:
             return []
         count, head = self.whole(key), self._header(header) if header else self.line_of(key) + 1
+        if head is None:
+            raise self.wrong(None, f"a table under a header that begins with {header}", "none")
         self._used.update(range(head, head + 2 + count))
         return [self._row(head, head + 2 + i, f"row {i + 1} of {count} of {key}", layouts) for i in range(count)]
 
-    def _header(self, word: str) -> int:
-        """Index of the line that begins with a word.
-
-        Raises:
-            InputError: There is none.
-        """
-        for i in range(len(self.lines)):
-            if self.words(i)[:1] == [word]:
-                return i
-        raise self.wrong(None, f"a table under a header that begins with {word}", "none")
+    def _header(self, word: str) -> int | None:
+        """Index of the first line that begins with a word, or None."""
+        return next((i for i in range(len(self.lines)) if self.words(i)[:1] == [word]), None)
 
     def word_rows(self, key: str) -> list[tuple[int, list[str]]]:
         """Index and words of the rows of a table of as many columns as every row says.
@@ -209,23 +207,20 @@ class KeyedFile:
         rows = [(start + 3 + i, self.words(start + 3 + i)) for i in range(count)]
         for i, (index, words) in enumerate(rows):
             if not words or math.isnan(to_number(words[0])):
-                text = shown(self.lines[index].strip()) if index < len(self.lines) else "the end of the file"
-                raise self.wrong(index, f"row {i + 1} of {count} of {key}", text)
+                raise self.wrong(index, f"row {i + 1} of {count} of {key}", self._text(index))
         return rows
 
     def table_under(self, header: str, layouts: Layouts) -> TableRow | None:
         """The one row under a header whose first word is given, or None."""
-        if not any(self.words(i)[:1] == [header] for i in range(len(self.lines))):
+        if (head := self._header(header)) is None:
             return None
-        head = self._header(header)
         self._used.update(range(head, head + 3))
         return self._row(head, head + 2, f"the row of {header}", layouts)
 
     def _row(self, header: int, index: int, description: str, layouts: Layouts) -> TableRow:
         words = self.words(index)
         if index >= len(self.lines) or not words or math.isnan(to_number(words[0])):
-            found = shown(self.lines[index].strip()) if index < len(self.lines) else "the end of the file"
-            raise self.wrong(min(index, len(self.lines) - 1), description, found)
+            raise self.wrong(min(index, len(self.lines) - 1), description, self._text(index))
         names = self.words(header)
         stated = next((i for i, name in enumerate(names) if name.startswith(("[", "!"))), len(names))
         count = stated if stated in layouts and len(names) > 2 else len(words)
