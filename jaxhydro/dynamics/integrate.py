@@ -13,6 +13,7 @@ from jaxtyping import Array, Float, Int
 from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.integrators import adams_bashforth, mixed_precision, runge_kutta
+from jaxhydro.integrators.adams_bashforth_coefficients import START_STEPS
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.support_sea import Clock
@@ -193,7 +194,7 @@ def clock(method: Method, start: float, step: float, count: int) -> Clock:
     """
     check(method=(method, get_args(Method)))
     if method == "ab4":
-        return Clock(start, step, count + EXTRA_STEPS, (0.0,), adams_bashforth.START_STEPS)
+        return Clock(start, step, count + EXTRA_STEPS, (0.0,), START_STEPS)
     if method == "diffrax":
         import diffrax
 

@@ -14,7 +14,7 @@ from jaxhydro.dynamics.response import Response
 from jaxhydro.dynamics.table_ranges import heading_fault
 from jaxhydro.dynamics.time_steps import steps_in
 from jaxhydro.exported_programs import exported_jit
-from jaxhydro.integrators import adams_bashforth
+from jaxhydro.integrators.adams_bashforth_coefficients import START_STEPS
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.rotations import rotation
 from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
@@ -142,7 +142,7 @@ def simulate_irregular(
     begin = float(times[0])
     if not sea.long_crested:
         duration = float(times[-1] - times[0])
-        steps = max(adams_bashforth.START_STEPS, math.ceil(duration / limit - 1e-9))
+        steps = max(START_STEPS, math.ceil(duration / limit - 1e-9))
         met = summed_directly(model, sea)
         response, grid = simulate_steps(
             model, met, start, times, jnp.asarray(duration / steps), steps, method, adjoint, precision

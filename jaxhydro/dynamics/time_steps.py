@@ -7,7 +7,7 @@ from jaxhydro.choices import check
 from jaxhydro.dynamics.integrate import Method
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import natural_modes
-from jaxhydro.integrators import adams_bashforth
+from jaxhydro.integrators.adams_bashforth_coefficients import START_STEPS
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import IrregularSea
 
@@ -72,4 +72,4 @@ def steps_in(sea: IrregularSea, duration: float, limit: float) -> tuple[float, i
     """
     period = float(sea.components.period)
     step = period / fourier_length(period / limit)
-    return step, max(adams_bashforth.START_STEPS, math.ceil(duration / step - 1e-9))
+    return step, max(START_STEPS, math.ceil(duration / step - 1e-9))

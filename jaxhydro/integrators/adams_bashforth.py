@@ -14,69 +14,22 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from jaxhydro.integrators.adams_bashforth_coefficients import (
+    EVALUATIONS,
+    START_STEPS,
+    STORED_SLOPES,
+    coefficients_of,
+    row_of,
+)
 from jaxhydro.integrators.linearised_rate import Rate, linearised_rate
-from jaxhydro.integrators.runge_kutta import RK4
 
 CHECKPOINT_STEPS = 64  # steps per checkpointed block of a reverse gradient
 BATCH = 4  # evaluations linearised together: their flow fills the cache
-START_STEPS = 3  # steps by RK4, of four evaluations each
-STORED_SLOPES = 4 * START_STEPS + 1  # slopes that are remembered
-
-
-def _nonzero(table: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Columns and values of the entries of every row that are not zero, which are so many at most."""
-    columns = np.argsort(table == 0, axis=1, kind="stable")[:, :most]
-    return columns, np.take_along_axis(table, columns, axis=1)
-
-
-class _Rows:
-    """Coefficients of each evaluation: its point y + h `point` . slopes, and the update h `add` . slopes.
-
-    Slopes are counted backwards from the newest, which `add` includes and `point` does not.
-    """
-
-    def __init__(self) -> None:
-        rows = 4 * START_STEPS + 4  # the last one repeats
-        self.point, self.add = np.zeros((rows, STORED_SLOPES)), np.zeros((rows, STORED_SLOPES))
-        self.time, self.step = np.zeros(rows), np.zeros(rows, int)
-        table = RK4.coefficients()
-        for i in range(4 * START_STEPS):
-            stage, self.step[i] = i % 4, i // 4
-            self.point[i, :stage] = table[stage, :stage][::-1]
-            self.time[i] = i // 4 + RK4.nodes[stage]
-            if stage == 3:
-                self.add[i, :4] = RK4.weights[::-1]
-        for i in range(4 * START_STEPS, rows):
-            step = i - 4 * START_STEPS + START_STEPS
-            self.time[i] = self.step[i] = step
-            for back, weight in enumerate((55 / 24, -59 / 24, 37 / 24, -9 / 24)):
-                taken = step - back
-                self.add[i, i - (4 * taken if taken < START_STEPS else 4 * START_STEPS + taken - START_STEPS)] = weight
-        # the same without zeros: how many evaluations ago, and coefficients
-        self.point_back, self.point_weight = _nonzero(self.point, 1)
-        self.point_back += 1
-        self.add_back, self.add_weight = _nonzero(self.add, 4)
-
-
-ROWS = _Rows()
 
 
 def evaluations(steps: int | Int[Array, ""]) -> Any:
     """Number of evaluations in `steps` steps."""
     return steps + 3 * START_STEPS
-
-
-def _row(index: Int[Array, ""]) -> tuple[Array, Array, Array, Array]:
-    """Coefficients, time (in steps) and step of an evaluation."""
-    row = jnp.minimum(index, len(ROWS.time) - 1)
-    late = (index - row).astype(float)
-    return jnp.array(ROWS.point)[row], jnp.array(ROWS.add)[row], jnp.array(ROWS.time)[row] + late, jnp.array(ROWS.step)[row]
-
-
-def _advance(y, slopes, slope, add, step):
-    """The state and the remembered slopes after an evaluation."""
-    slopes = jnp.concatenate([slope[None], slopes[:-1]])
-    return y + step * (add @ slopes), slopes
 
 
 def evaluation(
@@ -102,10 +55,11 @@ def evaluation(
     Returns:
         The state and the remembered slopes after it, the number of its step, and the state at which it was made.
     """
-    point, add, time, number = _row(index)
+    point, add, time, number = coefficients_of(index)
     state = y + step * (point @ slopes)
     slope = jnp.concatenate(rate(driver, start + step * time, state))
-    return *_advance(y, slopes, slope, add, step), number + jnp.maximum(index - len(ROWS.time) + 1, 0), state
+    slopes = jnp.concatenate([slope[None], slopes[:-1]])
+    return y + step * (add @ slopes), slopes, number, state
 
 
 def march(
@@ -174,15 +128,15 @@ class Tangent(NamedTuple):
             push: Its slope along the direction of the driver.
             step: Time step (s).
         """
-        row = jnp.minimum(index, len(ROWS.time) - 1)
+        row = row_of(index)
 
         def back(slopes: Array, ago: Array) -> Array:
             return jax.lax.dynamic_index_in_dim(slopes, (index - ago) % STORED_SLOPES, 0, keepdims=False)
 
-        (last,), (weight,) = jnp.array(ROWS.point_back)[row], jnp.array(ROWS.point_weight)[row]
+        (last,), (weight,) = jnp.array(EVALUATIONS.point_back)[row], jnp.array(EVALUATIONS.point_weight)[row]
         new = slope @ (self.y + step * weight * back(self.slopes, last)) + push
         slopes = jax.lax.dynamic_update_index_in_dim(self.slopes, new, index % STORED_SLOPES, 0)
-        lags, weights = jnp.array(ROWS.add_back)[row], jnp.array(ROWS.add_weight)[row]
+        lags, weights = jnp.array(EVALUATIONS.add_back)[row], jnp.array(EVALUATIONS.add_weight)[row]
         return Tangent(self.y + step * sum(weights[k] * back(slopes, lags[k]) for k in range(len(lags))), slopes)
 
 
@@ -204,7 +158,7 @@ def forward(
 
 def times_of(index: Int[Array, " m"], start: Float[Array, ""], step: Float[Array, ""]) -> Float[Array, " m"]:
     """Times (s) of evaluations."""
-    return start + step * jax.vmap(_row)(index)[2]
+    return start + step * jax.vmap(coefficients_of)(index)[2]
 
 
 @forward.def_jvp
@@ -219,9 +173,7 @@ def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int, shown: int):
 
     def advance(carry, now):
         tangent, d_path = carry
-        index = now[0]
-        row = jnp.minimum(index, len(ROWS.time) - 1)
-        d_path = jax.lax.dynamic_update_index_in_dim(d_path, tangent.y[:shown], _row(index)[3] + index - row, 0)
+        d_path = jax.lax.dynamic_update_index_in_dim(d_path, tangent.y[:shown], coefficients_of(now[0])[3], 0)
         return (tangent.after(*now, step), d_path), None
 
     def batch(block, carry):
@@ -243,10 +195,7 @@ def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Flo
     """The same path for a reverse gradient: states at block starts are stored, the others recomputed."""
 
     def advance(carry, index):
-        y, slopes = carry
-        point, add, time, _ = _row(index)
-        slope = jnp.concatenate(rate(driver, start + step * time, y + step * (point @ slopes)))
-        return _advance(y, slopes, slope, add, step), y
+        return evaluation(driver, index, *carry, start, step, rate)[:2], carry[0]
 
     total = evaluations(capacity + 1)
     blocks = -(-total // CHECKPOINT_STEPS)

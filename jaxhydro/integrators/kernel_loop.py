@@ -15,7 +15,7 @@ from jax.experimental.pallas import triton
 from jaxtyping import Array, Float
 
 from jaxhydro.integrators import adams_bashforth
-from jaxhydro.integrators.adams_bashforth import START_STEPS, STORED_SLOPES
+from jaxhydro.integrators.adams_bashforth_coefficients import START_STEPS, STORED_SLOPES
 from jaxhydro.integrators.kernel_plan import Plan, Value
 from jaxhydro.integrators.kernel_tiles import Tables, Writer, padded
 from jaxhydro.integrators.kernel_trace import plan
