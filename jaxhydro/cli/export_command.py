@@ -81,7 +81,7 @@ def export_model(platform: str, folder: Path, kind: DeckFormat, calibration: Pat
     contents = load_platform(platform)
     model = build(contents)
     if calibration is not None:
-        from jaxhydro.cli.simulate_command import calibrated
+        from jaxhydro.cli.model_messages import calibrated
 
         model = calibrated(model, platform, contents.name, calibration)
     writer = WRITERS[kind]

@@ -231,7 +231,7 @@ def _model(
     platform: str, calibration: Path | None, diffraction: str | None, elements: int | None, heading: float | None = None
 ) -> "Model":
     """The model of a platform, for waves of a heading (deg)."""
-    from jaxhydro.cli.simulate_command import calibrated
+    from jaxhydro.cli.model_messages import calibrated
     from jaxhydro.platform.build import model_of
     from jaxhydro.platform.schema import load_platform
 

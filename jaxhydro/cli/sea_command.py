@@ -9,8 +9,9 @@ import numpy as np
 import jaxhydro
 from jaxhydro.analysis.sea_statistics import in_order, summary, tables
 from jaxhydro.cli.console import complain, say, table
+from jaxhydro.cli.model_messages import print_remarks, print_rest
 from jaxhydro.cli.sea_options import transient_of, with_band
-from jaxhydro.cli.simulate_command import Job, finite, print_remarks, print_rest, told_of_bed
+from jaxhydro.cli.simulate_command import Job, finite, told_of_bed
 from jaxhydro.cli.simulation_files import Motion, SeaState, write_motion
 from jaxhydro.dynamics.irregular_simulation import CarriedAwayError
 from jaxhydro.dynamics.model import Model

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.cli.console import say, table
-from jaxhydro.cli.simulate_command import calibrated, print_position, print_remarks, print_rest
+from jaxhydro.cli.model_messages import calibrated, print_position, print_remarks, print_rest
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.static_forces import LineState, forces_by_load, line_states, mooring_stiffness, offset_curve
 from jaxhydro.dynamics.statics import equilibrium, linearised

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from jaxhydro.cli.console import complain, counting, say, table
-from jaxhydro.cli.simulate_command import print_remarks, print_rest, print_used
+from jaxhydro.cli.model_messages import print_remarks, print_rest, print_used
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interrupts import asked_to_stop, finished, stop_if_asked
 from jaxhydro.sweep.cluster import workers_of

@@ -14,7 +14,7 @@ from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
 import jaxhydro as jh
-from jaxhydro.cli.simulate_command import print_rest
+from jaxhydro.cli.model_messages import print_rest
 from jaxhydro.dynamics.integrate import Grid, integrate
 from jaxhydro.dynamics.natural_modes import _one_motion_each
 from jaxhydro.dynamics.response import Response

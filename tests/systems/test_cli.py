@@ -157,7 +157,7 @@ def test_bad_platforms_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     def equilibrium(model):
         raise jaxhydro.EquilibriumError("no static equilibrium: heave is out of balance by 0.3 of the weight")
 
-    monkeypatch.setattr("jaxhydro.cli.simulate_command.equilibrium", equilibrium)
+    monkeypatch.setattr("jaxhydro.cli.model_messages.equilibrium", equilibrium)
     broken = tmp_path / "broken.yaml"
     broken.write_text(PLATFORM.read_text().replace("density", "densty"))
     for name, words in (
