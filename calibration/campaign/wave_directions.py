@@ -24,7 +24,7 @@ class StatedDirections:
 
     Attributes:
         heading: Mean direction that the waves travel to (rad).
-        spreading: Exponent s of `spectra.spreading` (-); None: `systems`, or long-crested.
+        spreading: Exponent s of `spreading.spreading` (-); None: `systems`, or long-crested.
         systems: Wave systems; empty: one, with the record's own spectrum.
         seed: Seed of the random directions.
 

@@ -51,7 +51,7 @@ class WaveSystem:
         tp: Peak period (s).
         gamma: Peak enhancement of JONSWAP (-); None: that of IEC 61400-3-1.
         heading: Mean direction that the waves travel to (deg).
-        spreading: Exponent s of `spectra.spreading` (-); None: long-crested.
+        spreading: Exponent s of `spreading.spreading` (-); None: long-crested.
         spectrum: "jonswap" or "pierson-moskowitz".
     """
 

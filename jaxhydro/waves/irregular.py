@@ -66,7 +66,7 @@ def spectrum_components(
         amplitudes: "deterministic", sqrt(2 S d_omega), or "rayleigh", complex normal amplitudes of that mean square. Only
             with "rayleigh" is the energy of a sea random, as in nature.
         heading: Mean direction that the waves travel to (rad).
-        spreading: Exponent s of `spectra.spreading`, or None for long-crested waves. Each component has one heading: with
+        spreading: Exponent s of `spreading.spreading`, or None for long-crested waves. Each component has one heading: with
             one direction per frequency, a mean over time is the same everywhere.
 
     Returns:

@@ -1,11 +1,11 @@
-"""Wave spectra: Pierson-Moskowitz, JONSWAP, white noise and tables; moments and directional spreading.
+"""Wave spectra: Pierson-Moskowitz, JONSWAP, white noise and tables.
 
 Spectra S(omega) (m² s/rad) are one-sided over angular frequency, with m0 = integral of S = Hs² / 16. All functions are pure.
 Arguments are checked unless they are traced: under jit or grad nothing can be raised.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -103,7 +103,7 @@ def jonswap(
     """
     smooth = pierson_moskowitz(omega, significant_height, peak_period)
     gamma = _default_enhancement(significant_height, peak_period) if peak_enhancement is None else peak_enhancement
-    if _concrete(gamma) and not np.all((np.asarray(gamma) >= 1) & (np.asarray(gamma) <= MAX_ENHANCEMENT)):
+    if is_concrete(gamma) and not np.all((np.asarray(gamma) >= 1) & (np.asarray(gamma) <= MAX_ENHANCEMENT)):
         raise ValueError(f"peak_enhancement lies from 1 to {MAX_ENHANCEMENT:g}, found {gamma}")
     return smooth * _peaked(jnp.asarray(omega), jnp.asarray(peak_period), jnp.asarray(gamma))
 
@@ -137,7 +137,7 @@ def white_noise(omega: Float[Array, "..."], significant_height: Scalar, low: Sca
         ValueError: Hs is not above 0, or not 0 <= low < high.
     """
     _positive("significant_height", significant_height, "m")
-    if _concrete(low) and _concrete(high) and not 0 <= float(low) < float(high):
+    if is_concrete(low) and is_concrete(high) and not 0 <= float(low) < float(high):
         raise ValueError(f"white noise needs 0 <= low < high, found {low} and {high} rad/s")
     return jnp.where((omega >= low) & (omega <= high), significant_height**2 / 16 / (high - low), 0.0)
 
@@ -156,7 +156,7 @@ def tabulated(omega: Float[Array, "..."], frequencies: Float[Array, " n"], value
     Raises:
         ValueError: Shapes differ, frequencies do not ascend from 0 or above, or values are negative.
     """
-    if _concrete(frequencies) and _concrete(values):
+    if is_concrete(frequencies) and is_concrete(values):
         x, y = np.asarray(frequencies), np.asarray(values)
         if x.ndim != 1 or x.shape != y.shape or len(x) < 2:
             raise ValueError(f"a tabulated spectrum needs two columns of 2 or more, found shapes {x.shape} and {y.shape}")
@@ -167,91 +167,11 @@ def tabulated(omega: Float[Array, "..."], frequencies: Float[Array, " n"], value
     return jnp.interp(omega, frequencies, values, left=0.0, right=0.0)
 
 
-class Moments(NamedTuple):
-    """Spectral moments m_n = integral of omega^n S (m² (rad/s)^n), and periods made of them.
-
-    Attributes:
-        minus_one: m(-1).
-        zero: m0, the variance.
-        one: m1.
-        two: m2.
-        four: m4.
-    """
-
-    minus_one: Float[Array, ""]
-    zero: Float[Array, ""]
-    one: Float[Array, ""]
-    two: Float[Array, ""]
-    four: Float[Array, ""]
-
-    @property
-    def significant_height(self) -> Float[Array, ""]:
-        """Hm0 = 4 sqrt(m0) (m)."""
-        return 4 * jnp.sqrt(self.zero)
-
-    @property
-    def energy_period(self) -> Float[Array, ""]:
-        """T(-1) = 2 pi m(-1) / m0 (s)."""
-        return 2 * math.pi * self.minus_one / self.zero
-
-    @property
-    def mean_period(self) -> Float[Array, ""]:
-        """T1 = 2 pi m0 / m1 (s)."""
-        return 2 * math.pi * self.zero / self.one
-
-    @property
-    def zero_crossing_period(self) -> Float[Array, ""]:
-        """Tz = 2 pi sqrt(m0 / m2) (s), of a Gaussian process (Rice 1944)."""
-        return 2 * math.pi * jnp.sqrt(self.zero / self.two)
-
-
-def moments(omega: Float[Array, " w"], spectrum: Float[Array, " w"]) -> Moments:
-    """Spectral moments by the trapezoidal rule, between the first and the last frequency.
-
-    The fourth moment of an omega⁻⁵ tail grows with the logarithm of the last frequency: it depends on the cutoff.
-
-    Args:
-        omega: Ascending angular frequencies (rad/s), (w,).
-        spectrum: Spectral density (m² s/rad), (w,).
-    """
-    moving = omega > 0
-    inverse = jnp.where(moving, 1 / jnp.where(moving, omega, 1.0), 0.0)
-    powers = (inverse, jnp.ones_like(omega), omega, omega**2, omega**4)
-    return Moments(*(jnp.trapezoid(power * spectrum, omega) for power in powers))
-
-
-def spreading(heading: Float[Array, "..."], mean: Scalar = 0.0, exponent: Scalar = 10.0) -> Float[Array, "..."]:
-    """Directional spreading D (1/rad) over the whole circle.
-
-    D = Gamma(s + 1) / (2 sqrt(pi) Gamma(s + 1/2)) |cos((heading - mean) / 2)|^(2 s). The mean resultant is s / (s + 1), so
-    the standard deviation is about sqrt(2 / (s + 1)) rad. DNV-RP-C205 section 3.5.8 has cos^n of the whole angle over half
-    the circle, which is close at s = 2 n + 1.
-
-    Args:
-        heading: Directions (rad).
-        mean: Mean direction (rad).
-        exponent: s (-); 0: all directions alike.
-
-    Returns:
-        D, in the shape of `heading`.
-
-    Raises:
-        ValueError: s is negative.
-
-    References:
-        Longuet-Higgins, Cartwright and Smith (1963).
-    """
-    if _concrete(exponent) and not float(exponent) >= 0:
-        raise ValueError(f"the exponent of a spreading is not negative, found {exponent}")
-    s = jnp.asarray(exponent, float)
-    scale = jnp.exp(jax.lax.lgamma(s + 1) - jax.lax.lgamma(s + 0.5)) / (2 * math.sqrt(math.pi))
-    return scale * (0.5 + 0.5 * jnp.cos(heading - mean)) ** s  # cos^2 of the half angle
-
-
-def _concrete(value: Any) -> bool:
+def is_concrete(value: Any) -> bool:
+    """Whether a value is a number or an array, and not traced by JAX."""
     return not isinstance(value, jax.core.Tracer)
 
 
 def _positive(name: str, value: Any, unit: str) -> None:
-    if _concrete(value) and not np.all((np.asarray(value) > 0) & np.isfinite(value)):
+    if is_concrete(value) and not np.all((np.asarray(value) > 0) & np.isfinite(value)):
         raise ValueError(f"{name} is above 0 {unit}, found {value}")

@@ -1,8 +1,8 @@
-"""Directional spreading of waves: exponents, directions drawn, and circular moments.
+"""Directional spreading of waves: its law, exponents, directions drawn, and circular moments.
 
 Exponents are those of one law in terms of another.
 
-The law of this package is `spectra.spreading`, D ~ |cos((heading - mean) / 2)|^(2 s) over the whole circle. With r its mean
+The law of this package is `spreading`, D ~ |cos((heading - mean) / 2)|^(2 s) over the whole circle. With r its mean
 resultant, the first Fourier coefficient of D, r = s / (s + 1); the circular width is sqrt(2 (1 - r)) = sqrt(2 / (s + 1)).
 
 References:
@@ -15,10 +15,42 @@ References:
 import math
 from typing import NamedTuple
 
+import jax
+import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Array, Float
+
+from jaxhydro.waves.spectra import Scalar, is_concrete
 
 STRATA = 16  # equal parts of a sea's energy, one of each in every so many successive components
+
+
+def spreading(heading: Float[Array, "..."], mean: Scalar = 0.0, exponent: Scalar = 10.0) -> Float[Array, "..."]:
+    """Directional spreading D (1/rad) over the whole circle.
+
+    D = Gamma(s + 1) / (2 sqrt(pi) Gamma(s + 1/2)) |cos((heading - mean) / 2)|^(2 s). The mean resultant is s / (s + 1), so
+    the standard deviation is about sqrt(2 / (s + 1)) rad. DNV-RP-C205 section 3.5.8 has cos^n of the whole angle over half
+    the circle, which is close at s = 2 n + 1.
+
+    Args:
+        heading: Directions (rad).
+        mean: Mean direction (rad).
+        exponent: s (-); 0: all directions alike.
+
+    Returns:
+        D, in the shape of `heading`.
+
+    Raises:
+        ValueError: s is negative.
+
+    References:
+        Longuet-Higgins, Cartwright and Smith (1963).
+    """
+    if is_concrete(exponent) and not float(exponent) >= 0:
+        raise ValueError(f"the exponent of a spreading is not negative, found {exponent}")
+    s = jnp.asarray(exponent, float)
+    scale = jnp.exp(jax.lax.lgamma(s + 1) - jax.lax.lgamma(s + 0.5)) / (2 * math.sqrt(math.pi))
+    return scale * (0.5 + 0.5 * jnp.cos(heading - mean)) ** s  # cos^2 of the half angle
 
 
 class CircularMoments(NamedTuple):
@@ -52,7 +84,7 @@ def circular_moments(heading: Float[np.ndarray, " w"], energy: Float[np.ndarray,
 
 
 def exponent_of_width(width: float) -> float:
-    """Exponent s (-) of `spectra.spreading` whose circular width (rad) is given, 2 / width² - 1.
+    """Exponent s (-) of `spreading` whose circular width (rad) is given, 2 / width² - 1.
 
     Raises:
         ValueError: The width is not above 0 rad, or above sqrt(2) rad, that of all directions alike.
@@ -86,7 +118,7 @@ def exponent_of_cosine(n: float) -> float:
 def spread_angle(exponent: float, share: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
     """Angle (rad) from the mean direction below which a share of the energy travels.
 
-    The law is `spectra.spreading`. It is integrated by the trapezoidal rule over 20000 steps, up to ten circular widths from
+    The law is `spreading`. It is integrated by the trapezoidal rule over 20000 steps, up to ten circular widths from
     the mean.
 
     Args:

@@ -28,6 +28,7 @@ from jaxhydro.waves.spreading import (
     exponent_of_cosine,
     exponent_of_width,
     spread_angle,
+    spreading,
 )
 
 WATER = Environment(1025.0, 200.0)
@@ -49,7 +50,7 @@ def test_angles_have_the_law_of_spreading(s: float) -> None:
     share = np.array([0.01, 0.2, 0.5, 0.77, 0.999])
     for part, angle in zip(share, spread_angle(s, share)):
         grid = np.linspace(-math.pi, angle, 20001)
-        assert float(np.trapezoid(np.asarray(spectra.spreading(grid, 0.0, s)), grid)) == pytest.approx(part, abs=2e-5)
+        assert float(np.trapezoid(np.asarray(spreading(grid, 0.0, s)), grid)) == pytest.approx(part, abs=2e-5)
 
 
 @pytest.mark.parametrize("s", [2.0, 10.0, 40.0])
@@ -86,7 +87,7 @@ def test_openfast_spreading_is_the_same_law() -> None:
     """cos^(2 S) of pi angle / range: s = S for 360 degrees, n = 2 S for 180 degrees."""
     angle = np.linspace(-0.49 * math.pi, 0.49 * math.pi, 50)
     whole = np.abs(np.cos(math.pi * angle / math.radians(360))) ** (2 * 3.0)
-    ours = np.asarray(spectra.spreading(angle, 0.0, 3.0))
+    ours = np.asarray(spreading(angle, 0.0, 3.0))
     assert_allclose(whole / whole[25], ours / ours[25], rtol=1e-12)
     assert_allclose(np.cos(math.pi * angle / math.radians(180)) ** (2 * 3.0), np.cos(angle) ** 6, rtol=1e-12)
 
@@ -125,7 +126,7 @@ def table(s: float = 8.0, hs: float = 2.0, source: float = 300.0) -> tuple[np.nd
     """freq (Hz), dir (deg, from) and efth (m2/Hz/deg) of a JONSWAP sea with cos^2s spreading."""
     f, direction = np.linspace(0.04, 0.4, 73), np.arange(0.0, 360.0, 10.0)
     s_f = 2 * math.pi * np.asarray(spectra.jonswap(2 * math.pi * f, hs, 9.0, 2.0))
-    d = np.asarray(spectra.spreading(np.radians(direction), math.radians(source), s)) * math.radians(1)
+    d = np.asarray(spreading(np.radians(direction), math.radians(source), s)) * math.radians(1)
     return f, direction, s_f[:, None] * d
 
 

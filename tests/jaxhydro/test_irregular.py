@@ -20,6 +20,8 @@ from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.irregular import repeat_period, spectrum_components
 from jaxhydro.waves.recorded_waves import record_components, sampling_interval, separated_record
 from jaxhydro.waves.second_order import elevation_spectrum
+from jaxhydro.waves.spectral_moments import moments
+from jaxhydro.waves.spreading import spreading
 
 WATER = Environment(1025.0, 200.0, 9.81)
 BASIN = Environment(1025.0, 60.0, 9.81)
@@ -83,7 +85,7 @@ def test_pierson_moskowitz_in_closed_form() -> None:
     peak = 2 * math.pi / TP
     a, b = 5 / 16 * HS**2 * peak**4, 1.25 * peak**4
     omega = jnp.linspace(0.0, 60.0, 600_001)
-    found = spectra.moments(omega, spectra.pierson_moskowitz(omega, HS, TP))
+    found = moments(omega, spectra.pierson_moskowitz(omega, HS, TP))
     assert float(found.significant_height) == pytest.approx(HS, rel=1e-6)
     assert float(found.two) == pytest.approx(a / 4 * math.sqrt(math.pi / b) - a / (2 * 60**2), rel=1e-7)
     assert float(found.one) == pytest.approx(a / 4 * math.gamma(0.75) * b**-0.75, rel=1e-5)
@@ -116,7 +118,7 @@ def test_spectra_are_differentiable_everywhere() -> None:
 def test_white_noise_and_tables() -> None:
     """m0 = Hs^2/16; straight lines between values, nothing outside."""
     omega = jnp.linspace(0.0, 2.0, 200_001)
-    found = spectra.moments(omega, spectra.white_noise(omega, 4.0, 0.3, 1.2))
+    found = moments(omega, spectra.white_noise(omega, 4.0, 0.3, 1.2))
     assert float(found.significant_height) == pytest.approx(4.0, rel=1e-4)
     table = spectra.tabulated(jnp.array([0.1, 0.5, 0.75, 1.0, 1.1]), jnp.array([0.5, 1.0]), jnp.array([2.0, 4.0]))
     assert_allclose(table, [0, 2, 3, 4, 0])
@@ -126,7 +128,7 @@ def test_white_noise_and_tables() -> None:
 def test_spreading_integrates_to_one(s: float) -> None:
     """Periodic rectangle rule: integral 1, mean resultant s/(s + 1), mean heading as given."""
     heading = np.linspace(-math.pi, math.pi, 4001)[:-1]
-    weight = np.asarray(spectra.spreading(heading, 0.4, s)) * (heading[1] - heading[0])
+    weight = np.asarray(spreading(heading, 0.4, s)) * (heading[1] - heading[0])
     assert weight.sum() == pytest.approx(1.0, rel=1e-12)
     assert_allclose(weight @ np.exp(1j * heading), s / (s + 1) * np.exp(0.4j), atol=1e-12)
 
@@ -142,7 +144,7 @@ def test_spreading_integrates_to_one(s: float) -> None:
         (lambda: spectra.tabulated(1.0, [1.0, 0.5], [1.0, 1.0]), "ascend"),
         (lambda: spectra.tabulated(1.0, [0.5, 1.0], [1.0, -1.0]), "not negative, found -1"),
         (lambda: spectra.tabulated(1.0, [0.5, 1.0], [1.0]), "shapes"),
-        (lambda: spectra.spreading(0.0, 0.0, -1.0), "not negative"),
+        (lambda: spreading(0.0, 0.0, -1.0), "not negative"),
     ],
 )
 def test_spectra_that_cannot_be(call, message: str) -> None:
@@ -225,7 +227,7 @@ def test_spread_headings(s: float) -> None:
     resultant = np.exp(1j * (headings - 0.7)).mean()
     assert abs(resultant - s / (s + 1)) < 4 / math.sqrt(len(headings))
     grid = np.linspace(-math.pi, math.pi, 20001)
-    cumulative = np.cumsum(np.asarray(spectra.spreading(grid, 0.0, s))) * (grid[1] - grid[0])
+    cumulative = np.cumsum(np.asarray(spreading(grid, 0.0, s))) * (grid[1] - grid[0])
     assert kstest(headings - 0.7, lambda x: np.interp(x, grid, cumulative)).pvalue > 0.01
     assert np.all(np.asarray(drawn(heading=0.7).heading) == 0.7)
 
