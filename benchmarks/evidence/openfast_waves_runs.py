@@ -87,7 +87,7 @@ def changed(sea: str) -> dict[str, Any]:
     """Energies of case 3 in a sea with each of `CHANGES`; spectra for the figure; the set-down (m)."""
     from benchmarks.evidence import openfast_sea as of
     from jaxhydro.analysis.spectral import power_spectrum
-    from jaxhydro.waves.second_order import elevation_spectrum
+    from jaxhydro.waves.pair_sums import elevation_spectrum
 
     run = of.read(SEAS[sea])._replace(case=of.CASES["c3"])
     results: dict[str, Any] = {"set-down": float(elevation_spectrum(run.waves, of.WATER, (0.0, 0.0))[0].real), "psd": {}}

@@ -15,8 +15,8 @@ from jaxhydro.dynamics.model import Model, State
 from jaxhydro.integrators import adams_bashforth, mixed_precision, runge_kutta
 from jaxhydro.integrators.adams_bashforth_coefficients import START_STEPS
 from jaxhydro.integrators.mixed_precision import Precision
+from jaxhydro.waves.integration_clock import Clock
 from jaxhydro.waves.sea import AbstractSea
-from jaxhydro.waves.support_sea import Clock
 
 Method = Literal["tsit5", "rk4", "ab4", "diffrax"]
 Adjoint = Literal["forward", "reverse"]

@@ -16,9 +16,9 @@ from jaxhydro.dynamics.statics import EquilibriumError, equilibrium
 from jaxhydro.dynamics.time_steps import steps_in
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.pair_sums import elevation_spectrum
 from jaxhydro.waves.preparation import Preparation
 from jaxhydro.waves.sea_state import state_of
-from jaxhydro.waves.second_order import elevation_spectrum
 
 
 class SeaMotion(NamedTuple):

@@ -17,10 +17,12 @@ from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.directional_transfer import AnyTransfer
 from jaxhydro.waves.excitation import AnyExcitation
 from jaxhydro.waves.flow import Cylinders, Flow
+from jaxhydro.waves.integration_clock import Clock
+from jaxhydro.waves.pair_sums import elevation_spectrum
 from jaxhydro.waves.preparation import Preparation
 from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY, AbstractSea, Stretching, direction, growth
-from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum
-from jaxhydro.waves.support_sea import Clock, SupportSea
+from jaxhydro.waves.second_order import KINDS, Kind, bound_waves
+from jaxhydro.waves.support_sea import SupportSea
 from jaxhydro.waves.supports import Box, supports
 from jaxhydro.waves.wave_sea import WaveSea
 

@@ -14,10 +14,12 @@ from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.envelope import envelope
 from jaxhydro.waves.excitation import Excitation
+from jaxhydro.waves.integration_clock import Clock
+from jaxhydro.waves.pair_sums import sum_over_pairs
 from jaxhydro.waves.quadratic_transfer import Transfer
 from jaxhydro.waves.sea import growth
-from jaxhydro.waves.second_order import Kind, sum_over_pairs
-from jaxhydro.waves.support_sea import Clock, SupportSea
+from jaxhydro.waves.second_order import Kind
+from jaxhydro.waves.support_sea import SupportSea
 from jaxhydro.waves.supports import weights
 
 

@@ -17,7 +17,8 @@ from jaxhydro.waves.components import Components
 from jaxhydro.waves.continuation import continued
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.irregular import fourier_length, harmonic_components, harmonics
-from jaxhydro.waves.second_order import KINDS, Kind, elevation_spectrum
+from jaxhydro.waves.pair_sums import elevation_spectrum
+from jaxhydro.waves.second_order import KINDS, Kind
 from jaxhydro.waves.wave_errors import BandError
 
 MAX_JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does

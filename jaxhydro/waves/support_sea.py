@@ -10,28 +10,9 @@ from jaxtyping import Array, Float, Int
 from jaxhydro.environment import Environment
 from jaxhydro.waves.envelope import Envelope
 from jaxhydro.waves.flow import Cylinders, Flow
+from jaxhydro.waves.integration_clock import between
 from jaxhydro.waves.sea import AbstractSea, Stretching, stretched
-from jaxhydro.waves.supports import field, support_slope, surface
-
-INTERPOLATION_STEPS = 8  # steps of a clock between which a sea is interpolated
-
-
-class Clock(NamedTuple):
-    """Times at which a time integration asks for the sea.
-
-    Attributes:
-        start: First time (s).
-        step: Time step (s).
-        steps: Number of steps.
-        nodes: Fractions of a step at which the sea is asked for.
-        fine: Number of first steps that are also asked for at their middle.
-    """
-
-    start: float
-    step: float
-    steps: int
-    nodes: tuple[float, ...]
-    fine: int = 0
+from jaxhydro.waves.support_fields import field, support_slope, surface
 
 
 class Reflection(NamedTuple):
@@ -48,21 +29,6 @@ class Reflection(NamedTuple):
     delay: Float[Array, ""]
     seen: Float[Array, ""]
     middle: Float[Array, ""]
-
-
-def between(steps: Float[Array, "..."], total: int) -> tuple[Int[Array, "... h"], Float[Array, "... h"]]:
-    """Steps of a clock and their weights for Lagrange interpolation between steps.
-
-    Args:
-        steps: Fractional step numbers.
-        total: Number of steps of the clock.
-    """
-    base = jnp.clip(jnp.floor(steps).astype(int) - INTERPOLATION_STEPS // 2 + 1, 0, max(total - INTERPOLATION_STEPS, 0))
-    nodes = jnp.arange(INTERPOLATION_STEPS)
-    apart = jnp.where(jnp.eye(INTERPOLATION_STEPS, dtype=bool), 1.0, nodes[:, None] - nodes)
-    away = (steps - base)[..., None, None] - nodes
-    weight = jnp.where(jnp.eye(INTERPOLATION_STEPS, dtype=bool), 1.0, away / apart).prod(axis=-1)
-    return jnp.minimum(base[..., None] + nodes, total - 1), weight
 
 
 class SupportSea(AbstractSea):
@@ -105,7 +71,7 @@ class SupportSea(AbstractSea):
         """The same sea for an integration that starts `index` steps after the clock's start.
 
         Beyond the clock's end the sea stands still. Values at the middle of its first steps are interpolated between
-        `INTERPOLATION_STEPS` steps (Lagrange): to 1e-6 for a wave of 20 steps, to 2e-3 for one of 8.
+        `integration_clock.INTERPOLATION_STEPS` steps (Lagrange): to 1e-6 for a wave of 20 steps, to 2e-3 for one of 8.
         """
         total = self.series.shape[0]
         fine = None

@@ -21,7 +21,7 @@ from calibration.discovery.set_up import COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_
 from calibration.discovery.study import Study
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import Scaled
-from jaxhydro.waves.support_sea import Clock
+from jaxhydro.waves.integration_clock import Clock
 
 MASS, STIFFNESS, B11 = 8e6, 2e5, 3e5
 AFLOAT = {

@@ -21,8 +21,8 @@ from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_drift import COLUMNS, read_transfer
 from jaxhydro.loads import DriftTransfer
 from jaxhydro.sweep.prepared_sweep import _platform_text
+from jaxhydro.waves.integration_clock import Clock
 from jaxhydro.waves.quadratic_transfer import Transfer
-from jaxhydro.waves.support_sea import Clock
 
 GRID = np.linspace(0.2, 2.2, 9)  # rad/s
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "reference"

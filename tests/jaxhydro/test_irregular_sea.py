@@ -14,7 +14,8 @@ import jaxhydro as jh
 from jaxhydro.dynamics.integrate import clock, integrate
 from jaxhydro.dynamics.irregular_simulation import CarriedAwayError
 from jaxhydro.waves import Clock, Cylinders
-from jaxhydro.waves.supports import Box, cosine_sine, supports, weights
+from jaxhydro.waves.support_fields import cosine_sine
+from jaxhydro.waves.supports import Box, supports, weights
 from jaxhydro.waves.wave_errors import ShortWavesError
 
 WATER = jh.Environment(1025.0, 200.0, 9.81)

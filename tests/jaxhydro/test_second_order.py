@@ -17,7 +17,7 @@ from jaxhydro.environment import Environment
 from jaxhydro.quick_jit import on_device
 from jaxhydro.waves import second_order
 from jaxhydro.waves.components import Components, PlaneWaves, components
-from jaxhydro.waves.second_order import elevation_spectrum, sum_over_pairs
+from jaxhydro.waves.pair_sums import elevation_spectrum, sum_over_pairs
 
 DEEP = Environment(1025.0, 200.0, 9.81)
 SHALLOW = Environment(1025.0, 30.0, 9.81)

@@ -26,9 +26,10 @@ from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
 from jaxhydro.parameters import Parameter
 from jaxhydro.platform.convergence import with_elements
 from jaxhydro.waves.components import PlaneWaves
+from jaxhydro.waves.pair_sums import elevation_spectrum
 from jaxhydro.waves.recorded_waves import separated_record
 from jaxhydro.waves.sea import Stretching
-from jaxhydro.waves.second_order import bound_waves, elevation_spectrum, transfer
+from jaxhydro.waves.second_order import bound_waves, transfer
 
 CAMPAIGN = "jaxhydro/campaigns/volturnus-s-decays"
 TIMES = np.arange(0.0, 4.0, 1.0)
