@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from benchmarks.evidence.common import within
-from jaxhydro.analysis.spectral import bands
+from jaxhydro.analysis.motion_bands import bands
 from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, save, style
 
 PICTURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "closed-loop.png"

@@ -42,7 +42,7 @@ def compared(lines: tuple[str, ...], name: str) -> dict[str, Any]:
     from calibration.discovery.effects.candidates import with_effects
     from calibration.residuals.measured_seas import compare
     from calibration.residuals.wave_options import options_of
-    from jaxhydro.analysis.spectral import bands
+    from jaxhydro.analysis.motion_bands import bands
 
     campaign = load_campaign(campaign_with(lines, name))
     model = with_effects(campaign.model, TRACKED).with_values(TRACKED)

@@ -79,7 +79,7 @@ def numbers(folder: Path, name: str) -> dict[str, Any]:
 
     from calibration.campaign.load_campaign import load_campaign
     from calibration.results.result_folder import DIAGNOSIS_FILE
-    from jaxhydro.analysis.spectral import bands
+    from jaxhydro.analysis.motion_bands import bands
 
     found = json.loads((folder / DIAGNOSIS_FILE).read_text())
     tests = load_campaign(campaign_of(name)).manifest.tests
@@ -121,7 +121,7 @@ def draw(name: str, path: Path) -> None:
     import xarray as xr
 
     from calibration.campaign.load_campaign import load_campaign
-    from jaxhydro.analysis.spectral import bands
+    from jaxhydro.analysis.motion_bands import bands
     from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, stack, style
     from jaxhydro.units import unit_of
 

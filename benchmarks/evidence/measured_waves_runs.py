@@ -97,7 +97,8 @@ def lower(test: Any) -> dict[str, Any]:
         roll of the measured point (m/rad, the real part), each with its coherence.
     """
     from calibration.residuals.sea_errors import channels, density
-    from jaxhydro.analysis.spectral import band_integral, bands
+    from jaxhydro.analysis.motion_bands import bands
+    from jaxhydro.analysis.spectral import band_integral
     from jaxhydro.analysis.transfer_functions import transfer_function
 
     time, both = test.fit.time, channels(test)

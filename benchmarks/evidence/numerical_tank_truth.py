@@ -21,7 +21,7 @@ from benchmarks.evidence.numerical_tank_runs import (
     platform,
     setup,
 )
-from jaxhydro.analysis.spectral import BANDS
+from jaxhydro.analysis.motion_bands import BANDS
 from jaxhydro.interop.wamit_radiation import read_wamit
 
 DENSITY, GRAVITY = 1025.0, 9.81

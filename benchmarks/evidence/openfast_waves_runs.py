@@ -33,7 +33,8 @@ SLENDERNESS = (0.1, 0.3, 0.5, 1.0)  # wavenumber times radius (-), at which mean
 
 def energies(times: np.ndarray, motions: dict[str, np.ndarray], period: float) -> dict[str, float]:
     """Integrals of the spectrum (m2, deg2) in the paper's bands from 300 s on, and the mean surge (m)."""
-    from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum
+    from jaxhydro.analysis.motion_bands import bands
+    from jaxhydro.analysis.spectral import band_integral, power_spectrum
 
     late = times >= (300 if times[-1] > 900 else 0)
     results = {"mean": float(motions["surge"][late].mean())}

@@ -48,7 +48,7 @@ def densities(found: Found, seas: dict[str, tuple[float, float]], path: Path) ->
     """Spectra of the motions by case, mean over the seeds, the bands shaded."""
     from matplotlib.figure import Figure
 
-    from jaxhydro.analysis.spectral import bands
+    from jaxhydro.analysis.motion_bands import bands
     from jaxhydro.plots.style import WIDTH, header, save, style
 
     with style():

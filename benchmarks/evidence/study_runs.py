@@ -81,7 +81,8 @@ def spectra(position: np.ndarray) -> dict[str, Any]:
 
 def integrals(position: np.ndarray, sea: str) -> list[float]:
     """Band integrals (m2, deg2) in the order of COLUMNS, and mean surge (m)."""
-    from jaxhydro.analysis.spectral import band_integral, bands
+    from jaxhydro.analysis.motion_bands import bands
+    from jaxhydro.analysis.spectral import band_integral
 
     densities, period = spectra(position), SEAS[sea][1]
     after = times() >= TRANSIENT

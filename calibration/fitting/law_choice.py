@@ -20,7 +20,7 @@ from jaxhydro.errors import InputError, Problem
 from jaxhydro.interrupts import stopping
 from jaxhydro.loads.drag.keulegan_carpenter_law import log_ratio
 from jaxhydro.loads.sea_state_law import coefficients, exponent_label, reference_of
-from jaxhydro.platform.body import KeuleganCarpenter
+from jaxhydro.platform.coefficients_schema import KeuleganCarpenter
 from jaxhydro.platform.drag_laws import drag_law_labels, drag_laws_of, law_labels, surface_number
 from jaxhydro.waves.sea_state import SeaState
 

@@ -13,7 +13,7 @@ from calibration.residuals.wave_options import Options
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
-from jaxhydro.platform.body import HighPass, KeuleganCarpenter
+from jaxhydro.platform.coefficients_schema import HighPass, KeuleganCarpenter
 from jaxhydro.platform.drag_laws import DragLaw, drag_law_labels, plain_drag, surface_number, with_drag_laws
 from jaxhydro.waves.sea_state import SeaState
 

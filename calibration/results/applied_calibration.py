@@ -13,7 +13,7 @@ from calibration.results.strip_conventions import StripConventions
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError, shown, suggest
 from jaxhydro.loads.sea_state_law import EXPONENT_BASES, exponent_label, exponents_of, with_exponents
-from jaxhydro.platform.body import HighPass, KeuleganCarpenter
+from jaxhydro.platform.coefficients_schema import HighPass, KeuleganCarpenter
 from jaxhydro.platform.drag_laws import DragLaw, drag_laws_of, plain_drag, with_drag_laws
 from jaxhydro.waves.sea_state import SeaState
 

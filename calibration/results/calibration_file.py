@@ -12,7 +12,7 @@ from calibration.results.result_folder import Figure
 from calibration.results.sea_options_section import SeaOptions
 from calibration.results.strip_conventions import StripConventions
 from jaxhydro.input_schema import Number
-from jaxhydro.platform.body import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
+from jaxhydro.platform.coefficients_schema import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 from jaxhydro.result_model import ReferenceSeaState, ResultModel
 
 EnergyErrors = dict[str, dict[str, Number]]  # relative error of the energy, by motion and band

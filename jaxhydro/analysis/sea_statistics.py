@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from jaxhydro.analysis.motion_bands import bands
 from jaxhydro.analysis.record_statistics import statistics
-from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum
+from jaxhydro.analysis.spectral import band_integral, power_spectrum
 from jaxhydro.environment import DOFS
 from jaxhydro.units import unit_of
 from jaxhydro.waves.sea_state import peak_period

@@ -10,23 +10,9 @@ import numpy as np
 import scipy  # scipy.signal is imported when it is used: it takes a second
 from jaxtyping import Float
 
-from jaxhydro.environment import DOFS
 from jaxhydro.waves.recorded_waves import sampling_interval
 
 SEGMENT = 1000.0  # s: 0.001 Hz between frequencies, so that the lowest band, 0.005 to 0.025 Hz, has twenty of them
-
-BANDS = {  # Hz, low and high
-    "surge": (0.005, 0.025),
-    "heave": (0.02, 0.055),
-    "pitch": (0.02, 0.055),
-    "wave": (0.06, 0.15),
-    "wave, long": (0.05, 0.15),
-}
-"""Low-frequency bands of surge, heave and pitch, and the wave-frequency bands of a moderate and of a high sea: the paper's."""
-
-LONG_PEAK_PERIOD = (
-    0.7 / 0.06
-)  # s: from this peak period on a sea has energy below 0.06 Hz (JONSWAP has next to none below 0.7 of its peak)
 
 
 class PowerSpectrum(NamedTuple):
@@ -100,7 +86,7 @@ def band_integral(spectrum: PowerSpectrum, low: float, high: float) -> float:
     """
     _in_order(low, high)
     f = spectrum.frequency
-    edges = np.concatenate([f[:1], 0.5 * (f[1:] + f[:-1]), f[-1:]])
+    edges = _cell_edges(f)
     # each line holds density times spacing, also the first and the last, whose cells are halves: they are not doubled
     total = np.concatenate([[0.0], np.cumsum(spectrum.density) * (f[1] - f[0])])
     return float(np.interp(high, edges, total) - np.interp(low, edges, total))
@@ -186,7 +172,7 @@ def band_weights(
     size, shared, name = segment_samples(count, step, segment, overlap, window)
     taper = scipy.signal.get_window(name, size)
     f = np.fft.rfftfreq(size, step)
-    edges = np.concatenate([f[:1], 0.5 * (f[1:] + f[:-1]), f[-1:]])
+    edges = _cell_edges(f)
     share = np.clip((np.minimum(high, edges[1:]) - np.maximum(low, edges[:-1])) / np.diff(edges), 0.0, 1.0)
     sides = np.full(len(f), 2.0)
     sides[[0, *([-1] if size % 2 == 0 else [])]] = 1.0
@@ -196,28 +182,9 @@ def band_weights(
     return BandWeights(np.arange(0, count - size + 1, size - shared), taper, first, weight[first:last])
 
 
-def bands(dof: str, peak_period: float) -> dict[str, tuple[float, float]]:
-    """Low-frequency and wave-frequency band of a motion in a sea.
-
-    From a peak period of 11.7 s on, the wave band begins at 0.05 Hz instead of 0.06 Hz. Sway has the bands of surge, and
-    roll those of pitch.
-
-    Args:
-        dof: Name of a degree of freedom other than yaw.
-        peak_period: Peak period of the sea (s).
-
-    Returns:
-        Limits (Hz) of `low_frequency` and `wave_frequency`.
-
-    Raises:
-        ValueError: For yaw, an unknown name, or a period that is not above 0.
-    """
-    same = {"sway": "surge", "roll": "pitch"}.get(dof, dof)
-    if same not in DOFS or same not in BANDS:
-        raise ValueError(f"bands are known for surge, sway, heave, roll and pitch, found {dof!r}")
-    if not peak_period > 0:
-        raise ValueError(f"peak_period is above 0 s, found {peak_period}")
-    return {"low_frequency": BANDS[same], "wave_frequency": BANDS["wave, long" if peak_period >= LONG_PEAK_PERIOD else "wave"]}
+def _cell_edges(frequency: Float[np.ndarray, " f"]) -> Float[np.ndarray, " f+1"]:
+    """Limits of the cells in which each value of a spectrum holds: halfway to its neighbours, and the ends."""
+    return np.concatenate([frequency[:1], 0.5 * (frequency[1:] + frequency[:-1]), frequency[-1:]])
 
 
 def _in_order(low: float, high: float) -> None:

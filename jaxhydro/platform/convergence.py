@@ -102,7 +102,8 @@ def convergence(
     Raises:
         ValueError: An unknown group, an unknown degree of freedom, or a number of elements that is not whole and at least 1.
     """
-    from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum
+    from jaxhydro.analysis.motion_bands import bands
+    from jaxhydro.analysis.spectral import band_integral, power_spectrum
 
     if not elements or any(n != int(n) or n < 1 for n in elements):
         raise ValueError(f"numbers of elements are whole and at least 1, found {tuple(elements)}")

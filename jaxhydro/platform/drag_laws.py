@@ -23,7 +23,7 @@ from jaxhydro.loads.drag.abstract_law import LAW_LABEL
 from jaxhydro.loads.drag.drag_flow import lines_of
 from jaxhydro.loads.sea_state_law import EXPONENT_BASES, SeaStateLaw, exponent_label
 from jaxhydro.parameters import METADATA_KEY, strongly_typed
-from jaxhydro.platform.body import ConstantDrag, HighPass, HighPassAtEnds, KeuleganCarpenter, SuctionSide
+from jaxhydro.platform.coefficients_schema import ConstantDrag, HighPass, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 
 DragLaw: TypeAlias = ConstantDrag | HighPass | HighPassAtEnds | KeuleganCarpenter | SuctionSide
 Key: TypeAlias = tuple[str, str]

@@ -11,8 +11,9 @@ from pydantic import Field
 from jaxhydro.environment import STANDARD_GRAVITY
 from jaxhydro.errors import InputError, Problem, shown, suggest
 from jaxhydro.input_schema import Consistent, Number, Positive, Schema, Text, Vector, read_yaml, validate
-from jaxhydro.platform.body import Coefficients, Inertia, Member, Part, RigidBody
+from jaxhydro.platform.body import Inertia, Member, Part, RigidBody
 from jaxhydro.platform.catenary_schema import Catenary
+from jaxhydro.platform.coefficients_schema import Coefficients
 from jaxhydro.platform.computed_tables_schema import Drift, Excitation, Hydrostatics, Radiation
 from jaxhydro.platform.current_schema import SteadyCurrent
 from jaxhydro.platform.guided_mass_schema import GuidedMass, twice_named

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from jaxhydro.errors import Problem, shown, suggest
-from jaxhydro.platform.body import COEFFICIENTS, Coefficients
+from jaxhydro.platform.coefficients_schema import COEFFICIENTS, Coefficients
 
 
 def owners(groups: Mapping[str, Coefficients]) -> set[str]:

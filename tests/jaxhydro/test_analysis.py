@@ -7,17 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import signal
 
+from jaxhydro.analysis.motion_bands import BANDS, bands
 from jaxhydro.analysis.record_statistics import exceedance, statistics
 from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period
-from jaxhydro.analysis.spectral import (
-    BANDS,
-    PowerSpectrum,
-    band_integral,
-    band_pass,
-    band_weights,
-    bands,
-    power_spectrum,
-)
+from jaxhydro.analysis.spectral import PowerSpectrum, band_integral, band_pass, band_weights, power_spectrum
 from jaxhydro.analysis.transfer_functions import transfer_function
 from jaxhydro.environment import Environment
 from jaxhydro.waves.irregular import spectrum_components

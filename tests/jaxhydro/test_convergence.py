@@ -6,7 +6,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jaxhydro import IrregularSea, build, convergence, jonswap, load_platform, natural_modes, simulate, spectrum_components
-from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum
+from jaxhydro.analysis.motion_bands import bands
+from jaxhydro.analysis.spectral import band_integral, power_spectrum
 from jaxhydro.platform.convergence import with_elements
 
 PLATFORM = load_platform("volturnus-s-focal")
