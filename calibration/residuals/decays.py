@@ -20,7 +20,7 @@ from calibration.residuals.abstract_residual import AbstractResidual, Unknowns, 
 from calibration.residuals.padded_sizes import padded_size
 from jaxhydro.dynamics.integrate import integrate
 from jaxhydro.dynamics.model import Model, State
-from jaxhydro.dynamics.observe import observe
+from jaxhydro.dynamics.observe import changes_readings, observe
 from jaxhydro.dynamics.statics import characteristic_length, equilibrium
 from jaxhydro.environment import DOFS
 from jaxhydro.waves.sea import StillWater
@@ -161,7 +161,7 @@ class DecayProblem(AbstractResidual):
         rates = jnp.zeros(6).at[dofs].set(rate * record.pace)
         state = State(q, model.body_velocity(q, rates), model.rest().memory)
         grid = integrate(model, StillWater(), state, record.time[0], record.step, record.capacity, count=record.count)
-        if not model.senses:  # three motions cost less than six
+        if not changes_readings(model):  # three motions cost less than six
             return (grid.at(record.time, record.dofs)[0] - base[dofs] + offset).T
         return (observe(model, grid, record.time, base, in_waves=False)[:, dofs] + offset).T
 

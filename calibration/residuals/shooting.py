@@ -34,7 +34,7 @@ from calibration.residuals.seas import SeaProblem, SeaRun
 from jaxhydro.dynamics.integrate import EXTRA_STEPS, Grid, integrate, states
 from jaxhydro.dynamics.irregular_simulation import farthest
 from jaxhydro.dynamics.model import Model, State
-from jaxhydro.dynamics.observe import motion_behind, observe
+from jaxhydro.dynamics.observe import clock_lag, motion_behind, observe, reading_at
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
 from jaxhydro.environment import DOFS
 from jaxhydro.exported_programs import exported_jit
@@ -106,8 +106,8 @@ class BlockProblem(AbstractResidual):
         position, rate = block.smooth + block.loose * own.reshape(2, -1)
         fitted, continuous = block.loose[0] > 0, block.state
         rates = model.position_rate(continuous.position, continuous.velocity)
-        reading, reading_rate = jax.jvp(model.seen, (continuous.position,), (rates,))
-        origin = model.seen(base)[dofs]
+        reading, reading_rate = jax.jvp(lambda q: reading_at(model, q), (continuous.position,), (rates,))
+        origin = reading_at(model, base)[dofs]
         reading = reading.at[dofs].set(jnp.where(fitted, origin + position - constant, reading[dofs]))
         reading_rate = reading_rate.at[dofs].set(jnp.where(fitted, rate, reading_rate[dofs]))
         q, rates = motion_behind(model, reading, reading_rate)
@@ -183,15 +183,15 @@ def set_up_blocks(sea: SeaProblem, period: float) -> BlockProblem:
     """Cut the tests of a problem in waves into blocks of `PERIODS_PER_BLOCK` times a period (s)."""
     dofs = _fitted(sea)
     total = sum(len(run.pieces) for run in sea.runs)
-    origin = sea.model.seen(equilibrium(sea.model) if sea.from_rest else jnp.zeros(6))
-    late = sea.model.clock_lag()
+    origin = reading_at(sea.model, equilibrium(sea.model) if sea.from_rest else jnp.zeros(6))
+    late = clock_lag(sea.model)
     lag = 0.0 if late is None else float(late)
     blocks: list[Blocks] = []
     constant: list[float] = []
     wide: list[float] = []
     for run in sea.runs:
         path = _continuous(sea.model, run)
-        readings = np.asarray(sea.model.seen(path.position) - origin)
+        readings = np.asarray(reading_at(sea.model, path.position) - origin)
         made = RunInBlocks(run, path, dofs, [], lag)
         for test in dict.fromkeys(piece.test for piece in run.pieces):
             pieces = [piece for piece in run.pieces if piece.test == test]

@@ -15,6 +15,7 @@ from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import AbstractGroupedResidual
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.natural_modes import strain_energy
+from jaxhydro.dynamics.observe import changes_readings, reading_at
 from jaxhydro.dynamics.statics import characteristic_length, equilibrium, held_at, linearised
 from jaxhydro.environment import DOFS
 
@@ -45,7 +46,7 @@ class OffsetProblem(AbstractGroupedResidual):
         base = equilibrium(model) if self.from_rest else jnp.zeros(6)
 
         def reading(dof: int, position: Float[Array, ""]) -> Float[Array, "6"]:
-            return model.seen(held_at(model, dof, position)) - model.seen(base)
+            return reading_at(model, held_at(model, dof, position)) - reading_at(model, base)
 
         def held(dof: int, measured: Float[Array, ""]) -> Float[Array, ""]:
             """Held motion of the platform with which the tracked point reads the measured value (Newton)."""
@@ -54,7 +55,7 @@ class OffsetProblem(AbstractGroupedResidual):
                 value, slope = jax.jvp(lambda position: reading(dof, position)[dof], (position,), (jnp.ones_like(position),))
                 return position + (measured - value) / slope
 
-            return jax.lax.fori_loop(0, NEWTON_STEPS if model.senses else 0, corrected, measured + base[dof])
+            return jax.lax.fori_loop(0, NEWTON_STEPS if changes_readings(model) else 0, corrected, measured + base[dof])
 
         return jnp.stack([reading(dof, held(dof, q[dof])) for dof, q in zip(self.held, self.measured, strict=True)])
 

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup
 
-from jaxhydro.display.summaries import model_summary, span
+from jaxhydro.display.summaries import has_numbers, model_summary, span
 from jaxhydro.environment import DOFS
 from jaxhydro.units import for_people, unit_of
 
@@ -101,6 +101,6 @@ def modes_html(modes: "Modes") -> str:
     return html(f"Natural modes{unstable}", modes_frame(modes)[["motion", "period_s"]])
 
 
-def model_html(model: "Model") -> str:
-    """Summary of a model, and a table of its parameters."""
-    return html(model_summary(model), parameters_frame(model), index=True)
+def model_html(model: "Model") -> str | None:
+    """Summary of a model, and a table of its parameters; None where its numbers are not computed yet."""
+    return None if not has_numbers(model) else html(model_summary(model), parameters_frame(model), index=True)

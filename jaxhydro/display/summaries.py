@@ -30,6 +30,12 @@ def are_numbers(tree: object) -> bool:
     return all(isinstance(x, int | float | np.ndarray | jax.Array) and not isinstance(x, jax.core.Tracer) for x in leaves)
 
 
+def has_numbers(model: "Model") -> bool:
+    """Whether a model holds the numbers of one platform, and not shapes, tracers or several platforms."""
+    parts = (model.environment, model.body, model.hull.elements, model.hull.strips)
+    return are_numbers(parts) and np.ndim(model.body.mass) == 0
+
+
 def model_summary(model: "Model") -> str:
     """Mass, water, strips, loads and number of parameters of a model; natural periods are not computed.
 

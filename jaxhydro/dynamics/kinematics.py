@@ -1,21 +1,23 @@
 """Motion, submerged geometry and flow of a platform at an instant, from its position and velocity."""
 
-from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.dynamics.combined_loads import StripChanges
 from jaxhydro.dynamics.conventions import Conventions
 from jaxhydro.dynamics.member_flow import flow_at_lids, flow_past, flow_past_slender
-from jaxhydro.environment import Environment
+from jaxhydro.dynamics.newton_euler import optional_sum
+from jaxhydro.dynamics.state import State
 from jaxhydro.hull.hull import Hull, Wetted
 from jaxhydro.hull.submerged import EndShape, Lines, StripShape
-from jaxhydro.loads.forces_at_rest import ForcesAtRest
 from jaxhydro.loads.instant import Instant
 from jaxhydro.rotations import rotation, turned
-from jaxhydro.waves.flow import Cylinders
 from jaxhydro.waves.sea import AbstractSea
+
+if TYPE_CHECKING:
+    from jaxhydro.dynamics.model import Model
 
 
 class _Submerged(NamedTuple):
@@ -36,53 +38,27 @@ class _Submerged(NamedTuple):
     ends: Float[Array, " m"]
 
 
-def instant(
-    time: Float[Array, ""],
-    position: Float[Array, "6"],
-    velocity: Float[Array, "6"],
-    sea: AbstractSea,
-    *,
-    environment: Environment,
-    hull: Hull,
-    conventions: Conventions,
-    cylinders: Cylinders | None = None,
-    current: Callable[[Float[Array, " p"]], Float[Array, "3 p"] | None] = lambda _: None,
-    replaced: Float[Array, ""] | None = None,
-    fast_displacement: Float[Array, "2"] | None = None,
-    second_order: Float[Array, ""] | None = None,
-    excited: bool = False,
-    mass_replaced: bool = False,
-    forces_at_rest: Callable[[Float[Array, " k"] | None], ForcesAtRest | None] = lambda _: None,
-) -> Instant:
+def instant(model: "Model", time: Float[Array, ""], state: State, sea: AbstractSea) -> Instant:
     """Motion, submerged geometry and flow at an instant.
 
     Args:
+        model: The platform.
         time: Time (s).
-        position: Surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point.
-        velocity: Velocity of the reference point and angular velocity, body axes (m/s, rad/s).
-        sea: The sea that the platform meets.
-        environment: Water and gravity.
-        hull: The hull.
-        conventions: Form of the strip model.
-        cylinders: Strips, then ends, that diffract the waves.
-        current: Steady current (m/s, earth axes) at heights over still water (m), or None.
-        replaced: Fraction of the strips' inertial wave load that other loads replace.
-        fast_displacement: Part of the horizontal displacement (m) that those other loads do not follow.
-        second_order: Fraction of the second-order forces on slender members that strips and ends have.
-
-        excited: Whether any load needs the sea's computed excitation.
-        mass_replaced: Whether other loads replace added mass of strips and ends.
-        forces_at_rest: First-order forces at rest that strips and ends do not keep, from that excitation.
+        state: Position, velocity and memory.
+        sea: The sea that the platform meets, after its water effects.
 
     Returns:
         What the loads read.
     """
+    position, velocity, conventions, cylinders = state.position, state.velocity, model.conventions, model.cylinders
+    changes = StripChanges.of(model.loads, state.memory)
+    replaced, second_order = changes.replaced, changes.second_order
     matrix = rotation(position[3:])
-    hull = hull if conventions.directions == "body" else hull.turned(matrix.T)
+    hull = model.hull if conventions.directions == "body" else model.hull.turned(matrix.T)
     submerged = _submerged(time, position, matrix, sea, hull, conventions)
     lines, still = _lines(velocity, submerged, hull, conventions)
     points = _points(position, matrix, submerged, hull, conventions)
-    if (steady := current(points[2])) is not None:
+    if (steady := optional_sum([effect.current(points[2]) for effect in model.water])) is not None:
         still = still + _along(matrix.T @ steady, hull)
     flow = sea.flow(time, points, cylinders) if second_order is None else sea.flow(time, points, cylinders, gradient=True)
     slender = None
@@ -103,14 +79,15 @@ def instant(
         )
         at_rest = rest.covered * shape * rest.extent[0] * rest.extent[1]
         added_mass_volume = added_mass_volume + replaced * (at_rest - added_mass_volume)
-    slow = position if fast_displacement is None else position.at[:2].add(-fast_displacement)
-    excitation = sea.excitation(time, _origin(slow, matrix, conventions)[0]) if excited else None
+    fast = changes.fast_displacement
+    slow = position if fast is None else position.at[:2].add(-fast)
+    excitation = sea.excitation(time, _origin(slow, matrix, conventions)[0]) if changes.excited else None
     return Instant(
         time,
         position,
         matrix,
         velocity,
-        environment,
+        model.environment,
         hull,
         submerged.elements,
         added_mass_part,
@@ -122,8 +99,8 @@ def instant(
         lines,
         sea.drift(time),
         excitation,
-        forces_at_rest(excitation),
-        _wetted_at_rest(hull).elements if mass_replaced and replaced is None else None,
+        changes.forces_at_rest(excitation),
+        _wetted_at_rest(hull).elements if changes.mass_replaced and replaced is None else None,
         slender,
         flow_at_lids(flow, matrix, hull),
     )

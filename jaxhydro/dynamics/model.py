@@ -5,23 +5,22 @@ The equation of motion is (M + sum A_k) dv/dt = sum F_k.
 
 import dataclasses
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.choices import UnknownName, unknown
+from jaxhydro.dynamics.combined_loads import excitation_of, transfer_of
 from jaxhydro.dynamics.conventions import Conventions
 from jaxhydro.dynamics.kinematics import instant as instant_at
-from jaxhydro.dynamics.newton_euler import LoadSum, at_most_one, body_acceleration, optional_sum, sum_of_loads
+from jaxhydro.dynamics.model_parameters import about_parameter, check_values, shared_hint
+from jaxhydro.dynamics.newton_euler import LoadSum, body_acceleration, sum_of_loads
 from jaxhydro.dynamics.rigid_body import RigidBody
 from jaxhydro.dynamics.state import State, body_velocity, position_rate
 from jaxhydro.environment import Environment
 from jaxhydro.hull.hull import Hull
 from jaxhydro.loads.base import AbstractLoad
-from jaxhydro.loads.forces_at_rest import ForcesAtRest
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import AbstractEffect, Parameter, strongly_typed
 from jaxhydro.remarks import Remark
@@ -63,21 +62,14 @@ class Model(eqx.Module):
 
     def __repr__(self) -> str:
         """Mass, strips, loads and parameters; shapes where the numbers are not computed yet."""
-        from jaxhydro.display.summaries import model_summary
+        from jaxhydro.display.summaries import has_numbers, model_summary
 
-        return model_summary(self) if self._has_numbers() else eqx.Module.__repr__(self)
+        return model_summary(self) if has_numbers(self) else eqx.Module.__repr__(self)
 
     def _repr_html_(self) -> str | None:
         from jaxhydro.display.data_frames import model_html
 
-        return model_html(self) if self._has_numbers() else None
-
-    def _has_numbers(self) -> bool:
-        """Whether it holds the numbers of one platform, and not shapes, tracers or several platforms."""
-        from jaxhydro.display.summaries import are_numbers
-
-        parts = (self.environment, self.body, self.hull.elements, self.hull.strips)
-        return are_numbers(parts) and jnp.ndim(self.body.mass) == 0
+        return model_html(self)
 
     def plot(self) -> "list[Axes]":
         """Plot the hull from the side, with still water, and from above.
@@ -132,18 +124,7 @@ class Model(eqx.Module):
         Raises:
             UnknownName: No effect has a parameter of that label.
         """
-        for effect in self.effects:
-            if label in effect.values:
-                parameter = effect.about(label).sized(float(self.size), float(self.pace))
-                shares = self.hull.elements.shares
-                others = [share.group for share in shares if (share.owner, share.name) == parameter.coefficient]
-                return (
-                    parameter._replace(meaning=f"{parameter.meaning}; shared by {', '.join(others)}") if others else parameter
-                )
-        raise self._unknown(label)
-
-    def _unknown(self, label: str) -> UnknownName:
-        return unknown("parameter", label, sorted(self.values), self.shared_hint(label))
+        return about_parameter(self, label)
 
     def shared_hint(self, label: str) -> str:
         """Hint that a coefficient is shared, with the label that it has; empty for other labels.
@@ -151,14 +132,7 @@ class Model(eqx.Module):
         Args:
             label: Label that the coefficient would have in a group that shares it.
         """
-        for effect in self.effects if self.hull.elements.shares else ():
-            for owner_label, key in effect.keys.items():
-                coefficient = effect.about(owner_label).coefficient
-                for share in self.hull.elements.shares:
-                    shared = (share.owner, share.name) == coefficient
-                    if shared and effect.label_for(owner_label, (share.group, key[1])) == label:
-                        return f"It is shared: {owner_label}."
-        return ""
+        return shared_hint(self, label)
 
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
         """This model with some parameters changed.
@@ -175,12 +149,7 @@ class Model(eqx.Module):
             UnknownName: No effect has a parameter of a label.
             ValueError: A value is not finite, or is negative where physics does not allow it (`Parameter.check`).
         """
-        about = {label: effect.about for effect in self.effects for label in effect.values}
-        for label, value in values.items():
-            if label not in about:
-                raise self._unknown(label)
-            if not isinstance(value, jax.core.Tracer):
-                about[label](label).check(label, value)
+        check_values(self, values)
         return self.at_values(values)
 
     def at_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
@@ -224,19 +193,13 @@ class Model(eqx.Module):
 
     @property
     def transfer(self) -> AnyTransfer | None:
-        """Difference-frequency transfer function with which irregular seas are prepared, or None.
-
-        Raises:
-            ValueError: Two loads have one.
-        """
-        tables = [load.transfer_function() for load in self.loads]
-        return cast(AnyTransfer | None, at_most_one("difference-frequency transfer function", tables))
+        """Difference-frequency transfer function with which irregular seas are prepared, or None; ValueError for two."""
+        return transfer_of(self.loads)
 
     @property
     def excitation(self) -> AnyExcitation | None:
         """First-order excitation with which irregular seas are prepared, or None; ValueError for two."""
-        tables = [load.excitation_table() for load in self.loads]
-        return cast(AnyExcitation | None, at_most_one("computed excitation", tables))
+        return excitation_of(self.loads)
 
     def through(self, sea: AbstractSea) -> AbstractSea:
         """The sea that the platform meets: with the computed forces of its loads, and all water effects."""
@@ -246,28 +209,6 @@ class Model(eqx.Module):
         for effect in sorted(self.water, key=lambda effect: effect.comes_last):
             sea = effect.through(sea)
         return sea
-
-    def current(self, height: Float[Array, " p"]) -> Float[Array, "3 p"] | None:
-        """Sum of the steady currents (m/s, earth axes) at heights over still water (m), or None."""
-        return optional_sum([effect.current(height) for effect in self.water])
-
-    @property
-    def senses(self) -> bool:
-        """Whether any effect changes what the motion sensors read at an instant."""
-        return any(type(effect).seen is not AbstractSensorEffect.seen for effect in self.sensors)
-
-    def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
-        """Reading of the motion sensors at a position (m, rad), (..., 6)."""
-        for effect in self.sensors:
-            position = effect.seen(position)
-        return position
-
-    def clock_lag(self) -> Float[Array, ""] | None:
-        """Lag (s) of the recorded motions behind the waves, or None.
-
-        The record at t shows the motion at t - lag.
-        """
-        return optional_sum([effect.clock_lag() for effect in self.sensors])
 
     def rest(self) -> State:
         """State at the reference position, without motion."""
@@ -279,29 +220,7 @@ class Model(eqx.Module):
 
     def instant(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> Instant:
         """Motion, submerged geometry and flow at a time (s), in a state and a sea before water effects."""
-        return instant_at(
-            time,
-            state.position,
-            state.velocity,
-            self.through(sea),
-            environment=self.environment,
-            hull=self.hull,
-            conventions=self.conventions,
-            cylinders=self.cylinders,
-            current=self.current,
-            replaced=optional_sum([load.replaces() for load in self.loads]),
-            excited=self.excitation is not None,
-            mass_replaced=any(load.replaces_added_mass() is not None for load in self.loads),
-            forces_at_rest=self._forces_at_rest,
-            second_order=optional_sum([load.second_order_share() for load in self.loads]),
-            fast_displacement=optional_sum(
-                [load.fast_displacement(memory) for load, memory in zip(self.loads, state.memory, strict=True)]
-            ),
-        )
-
-    def _forces_at_rest(self, excitation: Float[Array, " k"] | None) -> ForcesAtRest | None:
-        """First-order forces at rest that strips and ends do not keep, or None; ValueError for two."""
-        return at_most_one("correction of diffraction", [load.forces_at_rest(excitation) for load in self.loads])
+        return instant_at(self, time, state, self.through(sea))
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> LoadSum:
         """Sum of all loads in body axes, at an instant and with the memory of each load."""

@@ -9,6 +9,38 @@ from jaxtyping import Array, Float
 
 from jaxhydro.dynamics.integrate import Grid
 from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.newton_euler import optional_sum
+from jaxhydro.sensors.sensor_effect import AbstractSensorEffect
+
+
+def changes_readings(model: Model) -> bool:
+    """Whether any sensor effect changes what the motion sensors read at an instant.
+
+    Args:
+        model: Platform whose effects may include sensor effects.
+    """
+    return any(type(effect).seen is not AbstractSensorEffect.seen for effect in model.sensors)
+
+
+def reading_at(model: Model, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
+    """Reading of the motion sensors at a position of the reference point.
+
+    Args:
+        model: Platform whose effects may include sensor effects.
+        position: Position (m, rad), (..., 6).
+    """
+    for effect in model.sensors:
+        position = effect.seen(position)
+    return position
+
+
+def clock_lag(model: Model) -> Float[Array, ""] | None:
+    """Lag (s) of the recorded motions behind the waves, or None: the record at t shows the motion at t - lag.
+
+    Args:
+        model: Platform whose effects may include sensor effects.
+    """
+    return optional_sum([effect.clock_lag() for effect in model.sensors])
 
 
 def observe(
@@ -21,9 +53,9 @@ def observe(
 ) -> Float[Array, "t 6"]:
     """Readings of the motion sensors, counted from their reading at the position `origin`.
 
-    reading(t) = seen(q(t - lag)) - seen(origin). Here q is the position of the reference point, and `Model.seen` the point
-    that is tracked. `Model.clock_lag` is the lag of the motions' clock behind that of the waves. In still water there is no
-    other clock, and the lag is left out: the release takes it up. Before its first and after its last step a motion is held.
+    reading(t) = reading_at(q(t - lag)) - reading_at(origin). Here q is the position of the reference point, and `clock_lag` the
+    lag of the motions' clock behind that of the waves. In still water there is no other clock, and the lag is left out: the
+    release takes it up. Before its first and after its last step a motion is held.
 
     Args:
         model: Platform whose loads may include sensor effects.
@@ -35,16 +67,16 @@ def observe(
     Returns:
         Surge, sway, heave (m), roll, pitch, yaw (rad) by instant.
     """
-    lag = model.clock_lag() if in_waves else None
+    lag = clock_lag(model) if in_waves else None
     position = motion.at(times if lag is None else times - lag)[0]
     zero = jnp.zeros(6) if origin is None else origin
-    return model.seen(position) - model.seen(zero)
+    return reading_at(model, position) - reading_at(model, zero)
 
 
 def motion_behind(
     model: Model, reading: Float[Array, "6"], rate: Float[Array, "6"]
 ) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
-    """Position and rate of the reference point from recorded ones: the inverse of `Model.seen`.
+    """Position and rate of the reference point from recorded ones: the inverse of `reading_at`.
 
     One step of Newton's method is exact for a tracked point, which adds a displacement that depends on the attitude alone.
 
@@ -56,8 +88,8 @@ def motion_behind(
     Returns:
         Position (m, rad) and rate (m/s, rad/s) of the reference point.
     """
-    if not model.senses:
+    if not changes_readings(model):
         return reading, rate
-    position = 2 * reading - model.seen(reading)
-    _, seen_rate = jax.jvp(model.seen, (position,), (rate,))
+    position = 2 * reading - reading_at(model, reading)
+    _, seen_rate = jax.jvp(lambda q: reading_at(model, q), (position,), (rate,))
     return position, 2 * rate - seen_rate

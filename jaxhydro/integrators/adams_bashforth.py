@@ -195,7 +195,8 @@ def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Flo
     """The same path for a reverse gradient: states at block starts are stored, the others recomputed."""
 
     def advance(carry, index):
-        return evaluation(driver, index, *carry, start, step, rate)[:2], carry[0]
+        y, slopes = carry
+        return evaluation(driver, index, y, slopes, start, step, rate)[:2], y
 
     total = evaluations(capacity + 1)
     blocks = -(-total // CHECKPOINT_STEPS)

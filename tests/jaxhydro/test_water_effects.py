@@ -17,6 +17,7 @@ from scipy.special import h1vp
 from test_loads import COEFFICIENTS, COLUMN, PONTOON, RHO, SEA, G, build, force, model_of, only
 
 import jaxhydro as jh
+from jaxhydro.dynamics.observe import clock_lag, reading_at
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     AbstractLoad,
@@ -130,9 +131,9 @@ def test_what_a_point_off_the_reference_reads() -> None:
 def test_a_delay_is_late() -> None:
     """y_rec(t) = y(t - delay), through the model; None where no load is about clocks."""
     model = build(COLUMN)
-    assert model.clock_lag() is None
+    assert clock_lag(model) is None
     late = model.with_effect(with_values(SensorLag(), delay=0.7))
-    assert float(late.clock_lag()) == 0.7
+    assert float(clock_lag(late)) == 0.7
     assert (force(late, VELOCITY, POSITION) == force(model, VELOCITY, POSITION)).all()
 
 
@@ -399,7 +400,7 @@ def test_every_parameter_has_a_slope_at_its_null() -> None:
     def look(x):
         changed = model.with_values(dict(zip(labels, x, strict=True)))
         total = changed.sum_of_loads(changed.instant(jnp.asarray(7.7), state, sea), memory).force
-        return jnp.concatenate([total / 1e6, changed.seen(state.position), changed.clock_lag()[None]])
+        return jnp.concatenate([total / 1e6, reading_at(changed, state.position), clock_lag(changed)[None]])
 
     x = np.array([float(model.about(label).neutral) for label in labels])
     assert (x == [float(model.values[label]) for label in labels]).all()

@@ -34,7 +34,7 @@ from calibration.results.applied_calibration import apply_calibration
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro.dynamics.integrate import Grid
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.observe import motion_behind, observe
+from jaxhydro.dynamics.observe import motion_behind, observe, reading_at
 from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
 from jaxhydro.rotations import rotation
@@ -95,7 +95,7 @@ def test_the_motion_behind_a_reading(body: Model) -> None:
     rng = np.random.default_rng(2)
     for _ in range(5):
         position, rate = (jnp.asarray(rng.normal(size=6)) for _ in range(2))
-        reading, reading_rate = jax.jvp(sensed.seen, (position,), (rate,))
+        reading, reading_rate = jax.jvp(lambda q: reading_at(sensed, q), (position,), (rate,))
         found = motion_behind(sensed, reading, reading_rate)
         assert_allclose(found[0], position, atol=1e-12)
         assert_allclose(found[1], rate, atol=1e-12)
@@ -129,7 +129,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         late = times > LAG
         moved = jh.simulate(model, np.concatenate([[0.0], times[late] - LAG]), sea, step=0.1)
         first = np.zeros((len(times) - late.sum() - 1, 6))  # at rest before the clock of the motions begins
-        readings = np.concatenate([first, np.asarray(model.seen(moved.position))])
+        readings = np.concatenate([first, np.asarray(reading_at(model, moved.position))])
         columns = np.column_stack([times, sea.gauge(times), *(readings[:, DOFS.index(name)] for name in CHANNELS)])
         np.savetxt(folder / f"sea-{seed}.csv", columns, "%.9f", ",", header="t,wave," + ",".join(CHANNELS), comments="")
         stated = {"peak_period": 9.0} if use == "fit" else {}  # where none is stated, both measure it
@@ -164,7 +164,7 @@ def test_a_campaign_is_compared_with_what_sensors_read(folder: Path) -> None:
     blocks = set_up_blocks(set_up_waves(true, seas, space, OPTIONS, objective="blocks", **how), 15.0)
     (cut,) = blocks.blocks
     rates = jax.vmap(true.position_rate)(cut.state.position, cut.state.velocity)
-    shown = [jax.jvp(true.seen, (q,), (v,)) for q, v in zip(cut.state.position, rates)]
+    shown = [jax.jvp(lambda q: reading_at(true, q), (q,), (v,)) for q, v in zip(cut.state.position, rates)]
     dofs = jnp.array(blocks.dofs)
     position = jnp.stack([q[dofs] for q, _ in shown]) + blocks.constant
     rate = jnp.stack([v[dofs] for _, v in shown])
@@ -180,7 +180,7 @@ def test_a_static_test_is_held_where_the_tracked_point_says(body: Model) -> None
     """Surge of the point is that measured; the other readings are the point's, too."""
     sensed = with_sensors(body)
     truth = np.asarray(held_at(body, 0, jnp.asarray(3.0)))
-    reading = np.asarray(sensed.seen(jnp.asarray(truth)))
+    reading = np.asarray(reading_at(sensed, jnp.asarray(truth)))
     record = SimpleNamespace(degree_of_freedom="surge", values={name: reading[[DOFS.index(name)]] for name in CHANNELS})
     offsets = set_up_offsets(sensed, [record], parameter_space(sensed, ["linear_damping.B33"]), from_rest=False)
     assert_allclose(eqx.filter_jit(lambda one: one.readings(one.space.start))(offsets)[0], reading, atol=1e-9)
