@@ -10,7 +10,7 @@ from calibration.decay_analysis.model_damping import drag_coefficient, model_dam
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.discovery.effects.candidates import Candidate
-from calibration.fitting.decay_fit import calibrate
+from calibration.fitting.decay_calibration import calibrate
 from calibration.fitting.fit_conclusion import identifiability_of
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.law_choice import SeaLaws, choose_law
@@ -25,7 +25,8 @@ from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.further_tests import decay_information, effective_noise, expected_information, rank_tests
 from calibration.uncertainty.likelihood import Likelihood
 from calibration.uncertainty.likelihood_of_fit import likelihood
-from calibration.uncertainty.nuts import Samples, sample
+from calibration.uncertainty.nuts import sample
+from calibration.uncertainty.posterior_samples import Samples
 from calibration.uncertainty.profile import Profile, profile
 
 __all__ = [

@@ -32,7 +32,8 @@ def of_campaign(name: str) -> dict[str, Any]:
     """Intervals of one campaign by method and label, as [lower, upper], None where open, and absent where there is none."""
     from benchmarks.evidence.coverage_campaigns import make
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.fitting.decay_fit import conclude, prepare_fit, run_fit
+    from calibration.fitting.decay_calibration import conclude
+    from calibration.fitting.decay_fit import prepare_fit, run_fit
     from calibration.uncertainty.bootstrap import bootstrap_blocks
     from calibration.uncertainty.likelihood_of_fit import likelihood_of
     from calibration.uncertainty.profile import profile
@@ -70,7 +71,8 @@ def of_campaign(name: str) -> dict[str, Any]:
 def of_measured(name: str) -> dict[str, list[float]]:
     """Of a measured decay: relative deviations with the residual as it is, as if it were white, and their ratio, by label."""
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.fitting.decay_fit import conclude, prepare_fit, run_fit
+    from calibration.fitting.decay_calibration import conclude
+    from calibration.fitting.decay_fit import prepare_fit, run_fit
     from calibration.uncertainty.likelihood_of_fit import likelihood_of
 
     campaign = load_campaign(SHARED / "measured" / name)

@@ -20,7 +20,7 @@ def calibrated(name: str) -> tuple[dict[str, Any], dict[str, Any]]:
         Errors, parameters and cycles; and the motions of its decay, measured and simulated, as `motions_of` has them.
     """
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.fitting.decay_fit import calibrate
+    from calibration.fitting.decay_calibration import calibrate
     from jaxhydro import natural_modes
     from jaxhydro.dynamics.response import decay_cycles
     from jaxhydro.units import for_people

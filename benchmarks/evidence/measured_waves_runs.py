@@ -42,7 +42,7 @@ def values_of(coefficients: str, key: str) -> dict[str, float]:
 def fitted() -> dict[str, Any]:
     """Coefficients calibrated to campaign 4's surge decay, and those that it does not determine."""
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.fitting.decay_fit import calibrate
+    from calibration.fitting.decay_calibration import calibrate
 
     parameters = calibrate(load_campaign(FOLDER / "focal-c4")).parameters
     vague = [k for k, p in parameters.items() if not p.identifiable]

@@ -15,7 +15,7 @@ GOAL = 0.85
 def calibrated(folder: str) -> dict[str, Any]:
     """A campaign calibrated from its platform file's values."""
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.fitting.decay_fit import calibrate
+    from calibration.fitting.decay_calibration import calibrate
 
     result = calibrate(load_campaign(folder))
     return {

@@ -38,7 +38,7 @@ def starts(count: int) -> list[dict[str, Any]]:
 def of_start(name: str) -> dict[str, Any]:
     """The calibration from one start; `name` is its number and how many there are."""
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.fitting.decay_fit import calibrate
+    from calibration.fitting.decay_calibration import calibrate
 
     index, count = map(int, name.split("-of-"))
     start = starts(count)[index - 1]

@@ -17,13 +17,14 @@ from calibration.campaign.extent_checks import extent_warnings
 from calibration.campaign.finding import Finding
 from calibration.campaign.manifest import Manifest
 from calibration.campaign.manifest_sections import DOFS, WAVE
+from calibration.campaign.oscillations import MIN_SAMPLES_PER_CYCLE
 from calibration.campaign.records import unit_factors
 from calibration.campaign.series import Series, read_series, valid_values
 from calibration.campaign.signal_checks import signal_findings
 from calibration.campaign.signals import missing_code, resolution, wave_height
 
 MAX_DROPPED_SHARE = 0.02  # of a window's rows
-FEW_SAMPLES_PER_CYCLE, MIN_SAMPLES_PER_CYCLE = 15, 8  # samples per cycle
+FEW_SAMPLES_PER_CYCLE = 15  # samples per cycle
 MIN_SAMPLES_PER_WAVE = 4  # these only drive: what is slower is worth having still
 MIN_WAVES = 20  # after the transient
 

@@ -8,6 +8,13 @@ from typing import Literal
 import numpy as np
 import scipy  # its parts are imported when they are used: that takes a second
 
+from calibration.campaign.oscillations import (
+    MIN_SAMPLES_PER_CYCLE,
+    moving_range,
+    spectral_peak_period,
+    true_stretches,
+    turning_points,
+)
 from calibration.campaign.signals import noise_level
 
 STILLNESS_DURATION = 0.2  # period, for which stillness is looked for; a free peak moves by 0.19 of its amplitude in it
@@ -27,7 +34,6 @@ CAUGHT_OFFSET, CAUGHT_SPEED = 0.3, 0.8  # of the amplitude: where a caught model
 RELEASE_DELAY = 0.02  # period after the release, at which the test begins
 PUSH_GROWTH, MIN_PUSH_SHARE = 1.25, 0.18  # by which a swing exceeds the two before it, and by how much of the whole range
 HALF_PERIOD_TOLERANCE = 0.15  # period, by which half a period may differ: another motion is no second push
-MIN_SAMPLES_PER_CYCLE = 8  # samples per cycle
 
 
 @dataclass(frozen=True)
@@ -67,11 +73,11 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
     even = np.arange(time[0], time[-1] + 0.5 * step, step)
     x = np.interp(even, time, values)
     noise = noise_level(even, x)
-    period = _period(x, step, noise)
+    period = spectral_peak_period(x, step, noise)
     slow = scipy.ndimage.uniform_filter1d(x, min(max(round(period / step), 1), len(x))) if np.isfinite(period) else x
-    apart = np.diff(_turning_points(slow, 0, len(x), SLOW_MOTION_SHARE * float(np.ptp(x))))
+    apart = np.diff(turning_points(slow, 0, len(x), SLOW_MOTION_SHARE * float(np.ptp(x))))
     if len(apart) and float(np.median(apart)) < 4 * period / step:  # the fast motion is not what was released
-        period = _period(slow, step, 0.0)
+        period = spectral_peak_period(slow, step, 0.0)
     gap = float(np.diff(time).max())
     if not MIN_SAMPLES_PER_CYCLE * step < period < 0.7 * (time[-1] - time[0]) or gap > max(
         STILLNESS_DURATION * period, 1.5 * step
@@ -112,20 +118,20 @@ def _first_decay(
     """
     size, width, cycle = 0.5 * float(np.ptp(y)), round(STILLNESS_DURATION * period), round(period)
     noise = NOISE_MARGIN * sigma / max(SMOOTHING_DURATION * period, 1) ** 0.5
-    spread = _range(y, width)
-    after = 0.5 * np.roll(_range(y, cycle), -width)
+    spread = moving_range(y, width)
+    after = 0.5 * np.roll(moving_range(y, cycle), -width)
     after[len(y) - width :] = 0.0
     moves = after > max(PEAK_PROMINENCE * size, 0.8 * noise / STILLNESS_AMPLITUDE)
     runs = [
         run
-        for run in _true_stretches((spread < STILLNESS_AMPLITUDE * after + noise) & moves)
+        for run in true_stretches((spread < STILLNESS_AMPLITUDE * after + noise) & moves)
         if run[1] - run[0] + width > MIN_HOLD_DURATION * period
     ]
     begins = [0, *(last + width for _, last in runs)]
     ends = [*(max(first, 1) for first, _ in runs), len(y)]
     lasts = [*(last + width for _, last in runs), len(y)]
     for i, (begin, end, still) in enumerate(zip(begins, ends, lasts)):
-        turns = _turning_points(y, begin, end, max(PEAK_PROMINENCE * size, 3 * noise))
+        turns = turning_points(y, begin, end, max(PEAK_PROMINENCE * size, 3 * noise))
         if len(turns) < MIN_PEAKS:
             continue
         peaks = y[turns[:7]]
@@ -145,7 +151,7 @@ def _first_decay(
             if i or (held - begin > MIN_VISIBLE_HOLD * cycle and misfit < MAX_HOLD_MISFIT * amplitude + 1.5 * sigma):
                 start, first = "release", held + RELEASE_DELAY * cycle
         later = (
-            np.diff(_turning_points(y, still, min(still + 12 * cycle, len(y)), max(PEAK_PROMINENCE * size, 3 * noise))) / cycle
+            np.diff(turning_points(y, still, min(still + 12 * cycle, len(y)), max(PEAK_PROMINENCE * size, 3 * noise))) / cycle
         )
         pushed = len(later) > 0 and abs(float(np.median(later)) - 0.5) < HALF_PERIOD_TOLERANCE
         stop, how = _find_end(y, turns, rest, cycle, noise, end, still if pushed else None)
@@ -167,15 +173,15 @@ def _find_end(
                 k -= 1  # a pull before the release is part of it
             return float(turns[k]), "push"
     width = round(STILLNESS_DURATION * cycle)
-    spread, before = _range(y, width), np.zeros(len(y))
-    before[cycle:] = 0.5 * _range(y, cycle)[:-cycle]
+    spread, before = moving_range(y, width), np.zeros(len(y))
+    before[cycle:] = 0.5 * moving_range(y, cycle)[:-cycle]
     still = (
         (spread < CATCH_AMPLITUDE * before + noise)
         & (noise < STILLNESS_AMPLITUDE * before)
         & (before > MIN_CATCH_AMPLITUDE * 0.5 * swings.max())
     )
     still &= (np.arange(len(y)) > turns[0]) & (np.arange(len(y)) < len(y) - width)
-    for first, last in _true_stretches(still):
+    for first, last in true_stretches(still):
         if first >= end:
             break
         if last - first + width < MIN_HOLD_DURATION * cycle:
@@ -208,58 +214,3 @@ def _find_release(x: np.ndarray, first: int, last: int, fall: float, cycle: int)
         residual = x[rows] + np.where(rows > release, fall * (1 - np.cos(2 * np.pi * (rows - release) / cycle)), 0.0)
         best = min(best, (float(np.mean((residual - residual.mean()) ** 2)), float(release)))
     return best[1], best[0] ** 0.5
-
-
-def _turning_points(y: np.ndarray, begin: int, end: int, prominence: float) -> np.ndarray:
-    """Where a motion turns, high and low in turn."""
-    part = y[begin:end]
-    high, low = (scipy.signal.find_peaks(sign * part, prominence=prominence)[0] for sign in (1, -1))
-    both = sorted([*((k, 1) for k in high), *((k, -1) for k in low)])
-    turns: list[tuple[int, int]] = []
-    for index, sign in both:
-        if turns and turns[-1][1] == sign:
-            if sign * part[index] > sign * part[turns[-1][0]]:
-                turns[-1] = (index, sign)
-        else:
-            turns.append((index, sign))
-    return np.array([index + begin for index, _ in turns], int)
-
-
-def _range(y: np.ndarray, width: int) -> np.ndarray:
-    """(n,) largest less smallest value from each sample on, over `width` samples."""
-    shift = -(width // 2)
-    high = scipy.ndimage.maximum_filter1d(y, width, origin=shift, mode="nearest")
-    return high - scipy.ndimage.minimum_filter1d(y, width, origin=shift, mode="nearest")  # type: ignore[no-any-return]
-
-
-def _true_stretches(flag: np.ndarray) -> list[tuple[int, int]]:
-    """First and last index of every stretch that is true."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flag, [False]]).astype(int)))
-    return [(int(first), int(last) - 1) for first, last in zip(edges[::2], edges[1::2])]
-
-
-def _period(x: np.ndarray, step: float, noise: float) -> float:
-    """Period of the highest peak in the spectrum of the speed.
-
-    The power is averaged over a tenth of the frequency, and the expected power of the noise is subtracted.
-
-    Args:
-        x: (n,) the motion, evenly sampled.
-        step: Time step, in any unit.
-        noise: Standard deviation of the noise of `x`.
-
-    Returns:
-        The period in the unit of `step`; infinite where the record resolves no frequency.
-    """
-    speed = np.diff(x)
-    frequency = np.fft.rfftfreq(4 * len(speed), step)
-    power = np.abs(np.fft.rfft(speed, 4 * len(speed))) ** 2
-    resolved = np.flatnonzero(frequency <= 1 / (MIN_SAMPLES_PER_CYCLE * step))[1:]
-    if not len(resolved):
-        return np.inf
-    total = np.concatenate([[0.0], np.cumsum(power)])
-    low, high = np.floor(resolved / 1.05).astype(int), np.minimum(np.ceil(resolved * 1.05).astype(int) + 1, len(power))
-    mean = (total[high] - total[low]) / (high - low)
-    mean -= 2 * len(speed) * (2 * noise * np.sin(np.pi * frequency[resolved] * step)) ** 2
-    best = int(np.argmax(mean))
-    return float(1 / frequency[low[best] + max(int(np.argmax(power[low[best] : high[best]])), low[best] == 0)])

@@ -10,7 +10,7 @@ from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.commands.loaded_campaign import load, print_calibrated_values
-from calibration.fitting.decay_fit import calibrate
+from calibration.fitting.decay_calibration import calibrate
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.law_choice import SeaLaws, choose_law
 from calibration.fitting.law_parameters import LAWS

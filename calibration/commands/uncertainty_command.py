@@ -26,7 +26,8 @@ from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeat
 from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.likelihood import Likelihood
 from calibration.uncertainty.likelihood_of_fit import likelihood_of, restored_fit
-from calibration.uncertainty.nuts import Samples, sample
+from calibration.uncertainty.nuts import sample
+from calibration.uncertainty.posterior_samples import Samples
 from calibration.uncertainty.profile import Profile, profile
 from jaxhydro.cli.console import complain, counting, progress, say, table
 from jaxhydro.errors import InputError, Problem, suggest

@@ -6,7 +6,7 @@ import numpy as np
 
 import jaxhydro
 from calibration.uncertainty.bootstrap_draws import Bootstrap
-from calibration.uncertainty.nuts import Samples
+from calibration.uncertainty.posterior_samples import Samples
 
 if TYPE_CHECKING:
     from arviz import InferenceData

@@ -8,7 +8,8 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest_sections import IN_WAVES
-from calibration.fitting.decay_fit import held_out, labels_of, prepare_fit, run_fit, space_of
+from calibration.fitting.decay_calibration import held_out
+from calibration.fitting.decay_fit import labels_of, prepare_fit, run_fit, space_of
 from calibration.fitting.decay_part import DecayPart
 from calibration.fitting.fit import Fit
 from calibration.fitting.fit_conclusion import calibration_of, records_not_followed

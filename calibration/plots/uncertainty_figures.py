@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from calibration.formatting import readable_unit
 from calibration.uncertainty.bootstrap_draws import Bootstrap
-from calibration.uncertainty.nuts import Samples
+from calibration.uncertainty.posterior_samples import Samples
 from calibration.uncertainty.profile import Profile
 from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WIDTH, header
 

@@ -73,10 +73,8 @@ def validation_tests(saved: DiagnosisFile) -> str:
 
 def verdict_sentence(saved: DiagnosisFile) -> str:
     """The verdict of a diagnosis in one sentence, for a project manager."""
-    missing = saved.missing
-    if any(effect.in_doubt == WAVE_ORDER for effect in missing.effects):
-        return f"{WAVES_FIRST} {verdict_of_effects(saved)}"
-    return verdict_of_effects(saved)
+    waves_in_doubt = any(effect.in_doubt == WAVE_ORDER for effect in saved.missing.effects)
+    return f"{WAVES_FIRST} {verdict_of_effects(saved)}" if waves_in_doubt else verdict_of_effects(saved)
 
 
 def verdict_of_effects(saved: DiagnosisFile) -> str:
@@ -228,8 +226,7 @@ def effect_in_three_lines(saved: DiagnosisFile, effect: FoundEffect) -> tuple[st
     """Name and size of an effect; how sure it is; what else it could be, with the test that would tell."""
     name = capitalised(effect_in_words(effect.effect, effect.degree_of_freedom))
     sizes = "; ".join(describe_parameter(*item) for item in sorted_by_certainty(effect.parameters))
-    evidence = effect.evidence
-    gain = evidence.holdout_gain
+    evidence, gain = effect.evidence, effect.evidence.holdout_gain
     certainty = [f"probability {describe_probability(evidence.probability)}"]
     if gain is None:
         certainty.append("no test was held out to check it")

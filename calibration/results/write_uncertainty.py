@@ -21,7 +21,7 @@ from calibration.results.uncertainty_file import (
 )
 from calibration.uncertainty.bootstrap_draws import Bootstrap
 from calibration.uncertainty.likelihood import Likelihood
-from calibration.uncertainty.nuts import Samples
+from calibration.uncertainty.posterior_samples import Samples
 from calibration.uncertainty.profile import Profile
 from jaxhydro.files import safe_name, staged
 from jaxhydro.result_model import finite_or_null, stated

@@ -14,7 +14,8 @@ from ruamel.yaml import YAML
 
 import jaxhydro as jh
 from calibration.campaign.load_campaign import Campaign, load_campaign
-from calibration.fitting.decay_fit import calibrate, fit_of_decays, run_fit, set_up_decays
+from calibration.fitting.decay_calibration import calibrate
+from calibration.fitting.decay_fit import fit_of_decays, run_fit, set_up_decays
 from calibration.fitting.fit import Fit
 from calibration.fitting.fit_conclusion import stated_zeros
 from calibration.fitting.normal_equations import LeastSquares, cost_of, normal_equations
@@ -431,7 +432,7 @@ def test_interruption_before_the_first_iteration(ship_campaign: Campaign, monkey
     def stop(_: Fit) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("calibration.fitting.decay_fit.run_fit", stop)
+    monkeypatch.setattr("calibration.fitting.decay_calibration.run_fit", stop)
     with pytest.raises(Interrupted) as caught:
         calibrate(ship_campaign)
     assert caught.value.partial is None

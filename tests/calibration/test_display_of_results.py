@@ -23,7 +23,7 @@ from calibration.results.write_calibration import document
 from calibration.results.write_diagnosis import document as document_of_diagnosis
 from calibration.results.write_diagnosis import write_diagnosis
 from calibration.uncertainty.bootstrap_draws import Bootstrap
-from calibration.uncertainty.nuts import Samples
+from calibration.uncertainty.posterior_samples import Samples
 from jaxhydro.choices import UnknownName
 
 LABELS = ("column.Cd_t", "linear_damping.B11")

@@ -14,7 +14,7 @@ from benchmarks.reference_waves import WaveModel, Waves, march
 from calibration.campaign.load_campaign import load_campaign
 from calibration.campaign.runs import Run, on_even_clock, runs
 from calibration.commands.simulate_campaign_command import simulate_campaign
-from calibration.fitting.decay_fit import calibrate
+from calibration.fitting.decay_calibration import calibrate
 from calibration.residuals.run_seas import MAX_MISMATCH, sea_of
 from calibration.residuals.wave_options import Options
 from calibration.results.applied_calibration import apply_calibration

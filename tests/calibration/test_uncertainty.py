@@ -14,7 +14,7 @@ from scipy.signal import lfilter
 from test_calibration import MEASURED, SHIP, SHIP_NOISE, SHIP_TRUE, measured, roll_decay, write
 
 from calibration.campaign.load_campaign import Campaign, load_campaign
-from calibration.fitting.decay_fit import calibrate
+from calibration.fitting.decay_calibration import calibrate
 from calibration.identifiability.residual_spectra import NoiseColour, fit_colours, periodogram, score_covariance, whittle
 from calibration.plots.uncertainty_figures import draws_figure, profile_figure
 from calibration.uncertainty import nuts as sampling

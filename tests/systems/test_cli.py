@@ -231,11 +231,11 @@ def test_missing_and_unknown_words_are_usage_errors(tmp_path: Path) -> None:
 def fitted(monkeypatch: pytest.MonkeyPatch) -> None:
     """A fit that takes no time."""
     command = pytest.importorskip("calibration.commands.calibrate_command")
-    fit = pytest.importorskip("calibration.fitting.decay_fit")
+    progress_module = pytest.importorskip("calibration.fitting.progress")
 
     def calibrate(campaign, progress):
         for i in range(3):
-            progress(fit.Progress("first cycles" if i < 2 else "whole records", i + 1, 3.0 / (i + 1), i / 3))
+            progress(progress_module.Progress("first cycles" if i < 2 else "whole records", i + 1, 3.0 / (i + 1), i / 3))
         return small()
 
     monkeypatch.setattr(command, "calibrate", calibrate)
