@@ -1,18 +1,14 @@
 """First-order wave forces from a radiation-diffraction program, in place of the strips'."""
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
-import equinox as eqx
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.slow_displacement import CORNER, memory_at_rest, memory_rate
+from jaxhydro.loads.abstract_excitation import AbstractExcitation
 from jaxhydro.parameters import parameter
-from jaxhydro.waves.excitation import AnyExcitation
 
 
-class ComputedExcitation(AbstractLoad):
+class ComputedExcitation(AbstractExcitation):
     """First-order wave force from tables, in place of that of the strips.
 
     F_i(t) = s Re sum_k X_i(w_k) A_k exp(i (w_k t - k x)), of the undisturbed first-order waves, along earth axes
@@ -34,30 +30,8 @@ class ComputedExcitation(AbstractLoad):
     `corner` is the filter's corner frequency (rad/s). `DiffractionCorrection` leaves the strips their second-order forces.
     """
 
-    excitation: AnyExcitation
     share: Float[Array, ""] = parameter("-", "share of the computed excitation, in place of the strips'", -0.5, 2.0)
-    corner: float = eqx.field(static=True, default=CORNER)
     source: ClassVar[str] = "Newman 1977, Marine Hydrodynamics, section 6.15; OpenFAST HydroDyn, WAMIT module (ExctnMod 1)"
-
-    def excitation_table(self) -> AnyExcitation:
-        return self.excitation
-
-    def covers(self) -> tuple[str, float, float]:
-        return "excitation", float(self.excitation.omega[0]), float(self.excitation.omega[-1])
-
-    def rest(self) -> Float[Array, "2 2"]:
-        return memory_at_rest()
-
-    def fast_displacement(self, memory: Float[Array, "2 2"]) -> Float[Array, "2"]:
-        return memory[0]
 
     def replaces(self) -> Float[Array, ""]:
         return self.share
-
-    def act(self, now: Instant, memory: Any) -> Action:
-        rate = memory_rate(memory, now.earth_velocity()[:2], self.corner)
-        if now.end_flow.pressure is None:
-            return Action(memory_rate=rate)
-        if now.excitation is None:
-            raise ValueError("the sea was made without the platform's excitation: prepare it with `Model.excitation`")
-        return Action(force=self.share * now.excitation, memory_rate=rate)

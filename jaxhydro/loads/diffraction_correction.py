@@ -3,23 +3,20 @@
 The table is that of a radiation-diffraction program.
 """
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.abstract_excitation import AbstractExcitation
 from jaxhydro.loads.forces_at_rest import ForcesAtRest, Part
-from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.slow_displacement import CORNER, memory_at_rest, memory_rate
 from jaxhydro.parameters import parameter
-from jaxhydro.waves.excitation import AnyExcitation
 
 Key = tuple[Part, str, str]
 """Part of `ForcesAtRest`, group and kind (t, z) of a coefficient."""
 
 
-class DiffractionCorrection(AbstractLoad):
+class DiffractionCorrection(AbstractExcitation):
     """Difference between a table's first-order wave force and that of the strips at rest.
 
     F_i(t) = s Re sum_k (X_i(w_k) - S_i(w_k)) A_k exp(i (w_k t - k x)), in earth axes (Newman 1977, section 6.15). X is that
@@ -35,23 +32,9 @@ class DiffractionCorrection(AbstractLoad):
     x is where the platform is horizontally, its motion in the waves left out, as for `ComputedExcitation`.
     """
 
-    excitation: AnyExcitation
-    coefficients: tuple[Key, ...] = eqx.field(static=True)
     share: Float[Array, ""] = parameter("-", "share of the correction of the strips' excitation by computed forces", -0.5, 2.0)
-    corner: float = eqx.field(static=True, default=CORNER)
+    coefficients: tuple[Key, ...] = eqx.field(static=True, default=())
     source: ClassVar[str] = "Newman 1977, Marine Hydrodynamics, section 6.15; strips at rest subtracted: the package's own"
-
-    def excitation_table(self) -> AnyExcitation:
-        return self.excitation
-
-    def covers(self) -> tuple[str, float, float]:
-        return "excitation", float(self.excitation.omega[0]), float(self.excitation.omega[-1])
-
-    def rest(self) -> Float[Array, "2 2"]:
-        return memory_at_rest()
-
-    def fast_displacement(self, memory: Float[Array, "2 2"]) -> Float[Array, "2"]:
-        return memory[0]
 
     def forces_at_rest(self, excitation: Float[Array, " k"] | None) -> ForcesAtRest | None:
         if excitation is None:
@@ -61,11 +44,3 @@ class DiffractionCorrection(AbstractLoad):
         for (part, group, kind), row in zip(self.coefficients, rows, strict=True):
             parts[part][group, kind] = row
         return ForcesAtRest(**parts)
-
-    def act(self, now: Instant, memory: Any) -> Action:
-        rate = memory_rate(memory, now.earth_velocity()[:2], self.corner)
-        if now.end_flow.pressure is None:
-            return Action(memory_rate=rate)
-        if now.excitation is None:
-            raise ValueError("the sea was made without the platform's excitation: prepare it with `Model.excitation`")
-        return Action(force=self.share * now.excitation[:6], memory_rate=rate)

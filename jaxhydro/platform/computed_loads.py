@@ -17,7 +17,7 @@ from jaxhydro.interop.wamit_drift import read_directional_transfer, read_transfe
 from jaxhydro.interop.wamit_excitation import read_directional_excitation, read_excitation
 from jaxhydro.interop.wamit_radiation import read_wamit
 from jaxhydro.loads import AbstractLoad, Buoyancy, ComputedAddedMass, ComputedExcitation, ComputedRadiation, DriftTransfer
-from jaxhydro.loads.computed_excitation import CORNER
+from jaxhydro.loads.slow_displacement import CORNER
 from jaxhydro.platform import schema as schema
 from jaxhydro.platform.computed_hydrostatics import hydrostatic_stiffness
 from jaxhydro.platform.computed_tables_schema import Drift, Excitation, Radiation

@@ -42,7 +42,8 @@ def _correction(model: Model, table: ComputedExcitation) -> DiffractionCorrectio
     whole = table.excitation
     low, high = float(whole.omega[0]), float(whole.omega[-1])
     omega = np.unique(np.concatenate([np.asarray(whole.omega), np.linspace(low, high, MIN_FREQUENCIES)]))
-    return DiffractionCorrection(_rows(model, whole, omega, tuple(keys)), tuple(keys), table.share, table.corner)
+    rows = _rows(model, whole, omega, tuple(keys))
+    return DiffractionCorrection(rows, table.share, table.corner, tuple(keys))
 
 
 def _rows(model: Model, whole: AnyExcitation, omega: Float[np.ndarray, " n"], keys: tuple[Key, ...]) -> AnyExcitation:

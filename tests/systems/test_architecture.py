@@ -24,6 +24,7 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
     "matrix": "*",
     "coefficients": "*",
     "abstract_law": "*",
+    "abstract_excitation": "*",
     "abstract_lines": "*",
     "constant_law": "*",
     "drag_flow": "*",

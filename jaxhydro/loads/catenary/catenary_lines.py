@@ -53,16 +53,7 @@ class CatenaryLines(AbstractLines):
     def tension(
         self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
     ) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
-        """Tension at the fairleads, and the direction in which the lines pull there.
-
-        Args:
-            position: Position of the platform (m, rad).
-            matrix: Rotation matrix from body to earth axes.
-
-        Returns:
-            Tension (N), (l,), and unit vectors of the pull in body axes, (3, l). The tension is NaN where no balance was
-            found.
-        """
+        """Tension and unit vectors of the pull, as `AbstractLines.tension`; NaN where no balance was found."""
         pull = self.pull(position, matrix)
         square = (pull**2).sum(axis=0)
         size = jnp.sqrt(jnp.where(square > 0, square, 1.0))
