@@ -60,9 +60,11 @@ def interval(low: float | None, high: float | None) -> str:
 
 
 def percent(ratio: float | None) -> str:
-    """A ratio in per cent; a dash where there is none, or it is of something that does not move."""
-    if ratio is None or not abs(ratio) < 1e4:
+    """A ratio in per cent, `> 10000 %` where it is larger; a dash where there is none, or it is infinite."""
+    if ratio is None or not math.isfinite(ratio):
         return "–"
+    if 100 * abs(ratio) >= LARGEST_PERCENT:
+        return f"{'> ' if ratio > 0 else '< -'}{LARGEST_PERCENT:g} %"
     return f"{100 * ratio:.2g} %" if abs(ratio) < 0.995 else f"{100 * ratio:.0f} %"
 
 

@@ -9,6 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import jax.numpy as jnp
+
 from calibration.campaign.checks import check_records
 from calibration.campaign.finding import Finding
 from calibration.campaign.manifest import Manifest, platform_source, read_manifest
@@ -21,6 +23,7 @@ from calibration.campaign.wave_band import wave_band
 from calibration.formatting import listed
 from jaxhydro.choices import unknown
 from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.rest_remarks import unrestored_motions
 from jaxhydro.dynamics.statics import EquilibriumError, stable_modes
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.files import campaign_file
@@ -142,12 +145,10 @@ def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]
                 yield Problem(f"tests[{i}].sea.{key}", expected, f"{heading:g} deg")
 
 
-def _missing_restoring(platform: Platform) -> str:
-    """Which restoring a platform without members leaves out, or ""."""
-    if platform.members or platform.hydrostatics is None:
-        return ""
-    stated = platform.hydrostatics.model_dump(exclude_defaults=True)
-    left_out = [key for key in ("C44", "C55") if not {key, f"{key}_buoyancy", "file"} & set(stated)]
+def _missing_restoring(model: Model) -> str:
+    """Which restoring of roll and pitch a platform without members leaves out, or ""."""
+    bare = unrestored_motions(model, jnp.zeros(6))
+    left_out = [bare[dof] for dof in ("roll", "pitch") if dof in bare]
     verb = "are" if len(left_out) > 1 else "is"
     return f"Without members, `hydrostatics` states what restores: {listed(left_out)} {verb} left out." if left_out else ""
 
@@ -202,10 +203,10 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
         stable_modes(model)
         doubtful = check_plausible(records, model, manifest.zero is not None, manifest.scale)
     except EquilibriumError as error:
-        expected, hint = "a platform that floats at rest", _missing_restoring(platform)
+        expected, hint = "a platform that floats at rest", _missing_restoring(model)
         raise InputError(source, [Problem(manifest.platform, expected, str(error), hint)]) from None
     band = wave_band(manifest, model, records)
-    doubtful = (*restoring_findings(records, platform), *doubtful)
+    doubtful = (*restoring_findings(records, model), *doubtful)
     copied = built_in_findings(platform_source(manifest, folder), manifest.platform)
     doubtful = (*copied, *platform_findings(model, manifest.platform), *check_tables(records, model, band), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:

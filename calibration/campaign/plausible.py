@@ -11,9 +11,9 @@ from calibration.campaign.records import Record
 from calibration.campaign.signals import dominant_period, wave_height
 from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.rest_remarks import unrestored_motions
 from jaxhydro.dynamics.statics import characteristic_length, equilibrium, natural_modes, widths
 from jaxhydro.environment import DOFS
-from jaxhydro.platform.schema import Platform
 from jaxhydro.units import for_people, unit_of
 
 # natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60
@@ -67,17 +67,18 @@ def check_plausible(records: Sequence[Record], model: Model, zeroed: bool, scale
     )
 
 
-def restoring_findings(records: Sequence[Record], platform: Platform) -> Iterator[Finding]:
+def restoring_findings(records: Sequence[Record], model: Model) -> Iterator[Finding]:
     """Measured heave, roll or pitch of a platform without members that nothing in its file restores.
 
     A fit may then lean or sink the hull at the start of a record, to follow the other motions more closely.
+
+    Args:
+        records: Records of the campaign.
+        model: Model of the platform file.
     """
-    if platform.members or platform.mooring.kind != "none":
-        return
-    stated = {key for part in (platform.hydrostatics, platform.stiffness) for key in part.model_dump(exclude_defaults=True)}
-    for name, key in (("heave", "C33"), ("roll", "C44"), ("pitch", "C55")):
+    for name, key in unrestored_motions(model, equilibrium(model)).items():
         decays = [r for r in records if r.kind == "decay" and r.use != "ignore" and name in r.values]
-        if decays and not {key, f"{key}_buoyancy", "file"} & stated:
+        if decays:
             way_out = f"give hydrostatics.{key}"
             if not any(record.degree_of_freedom == name for record in decays):
                 way_out += f", or take {name} out of `channels`"

@@ -17,6 +17,7 @@ from calibration.fitting.law_parameters import LAWS
 from calibration.fitting.progress import Interrupted
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.fitting.weighted_residuals import Loss
+from calibration.global_search.multistart import MultiStart
 from calibration.global_search.run_search import SearchInterrupted, search
 from calibration.global_search.task import Budget
 from calibration.report import tables
@@ -33,9 +34,10 @@ from calibration.results.result_folder import RESULT_FILE
 from calibration.results.write_calibration import NotFinite, write_calibration
 from calibration.results.write_laws import write_laws
 from jaxhydro.cli.console import complain, progress, say, table
-from jaxhydro.errors import InputError, Problem
+from jaxhydro.errors import InputError, Problem, shown
 from jaxhydro.platform.drag_laws import law_labels
 
+SEARCH_METHODS = (MultiStart.name,)
 SEARCH_SECONDS = 60.0  # CPU time of a search
 SEARCH_ENDINGS = {
     "settled": "ended of its own",
@@ -96,7 +98,7 @@ def run(
         loss: Loss of all kinds of tests together.
         truth: True coefficients of a synthetic campaign. The result is compared with them, and a report page is made.
         start: Calibration whose values the fit begins from.
-        method: Global search of the decays' coefficients, whose result the fit begins from.
+        method: Global search of the decays' coefficients whose result the fit begins from, "multistart"; None: no search.
         seed: Seed of the search.
         seconds: CPU time of the search (s).
 
@@ -115,6 +117,8 @@ def run(
     if objective != "bands" and tests == "decays":
         expected = "--tests waves or all beside it: decays are fitted to their motion"
         raise InputError("--objective", [Problem("", expected, "--tests decays")])
+    if method not in (None, *SEARCH_METHODS):
+        raise InputError("--method", [Problem("", " or ".join(SEARCH_METHODS), shown(method))])
     if method is None and (seed, seconds) != (0, SEARCH_SECONDS):
         raise InputError("--method", [Problem("", "a search beside --search-seed and --search-seconds", "none")])
     if law == "choose" and objective != "bands":

@@ -15,6 +15,7 @@ from jaxhydro.remarks import Remark
 
 MAX_REST_HEAVE = 0.1  # of the draught: heave at rest from which the platform does not rest as it was drawn
 MAX_REST_TILT = math.radians(3.0)
+RESTORING_KEYS = {"heave": "C33", "roll": "C44", "pitch": "C55"}  # of a platform file's `hydrostatics`
 NO_STIFFNESS = 1e-9  # over the weight, per m or times m: a smaller stiffness is none
 
 
@@ -41,26 +42,36 @@ def rest_remarks(model: Model, rest: Float[Array, "6"]) -> list[Remark]:
     return remarks
 
 
+def unrestored_motions(model: Model, rest: Float[Array, "6"]) -> dict[str, str]:
+    """Heave, roll and pitch that nothing but the weight restores, where the platform has no members.
+
+    Args:
+        model: The platform.
+        rest: Position of rest (m, rad), (6,).
+
+    Returns:
+        Key of a platform file that would state what restores, by motion.
+    """
+    if model.hull.strips.element:
+        return {}
+    stiffness = np.diagonal(np.asarray(linearised(model, rest)[1]))
+    weight = float(model.body.mass * model.environment.gravity)
+    of_weight = -weight * float(model.body.centre[2])
+    others = {"heave": stiffness[2], "roll": stiffness[3] - of_weight, "pitch": stiffness[4] - of_weight}
+    return {dof: RESTORING_KEYS[dof] for dof, other in others.items() if abs(other) <= NO_STIFFNESS * weight}
+
+
 def restoring_remarks(model: Model, rest: Float[Array, "6"]) -> list[Remark]:
-    """Remark on motions that only the weight restores, or nothing, where the platform has no members.
+    """Warning on `unrestored_motions`, if there are any.
 
     Args:
         model: The platform.
         rest: Position of rest (m, rad), (6,).
     """
-    if model.hull.strips.element:
-        return []
-    stiffness = np.diagonal(np.asarray(linearised(model, rest)[1]))
-    weight = float(model.body.mass * model.environment.gravity)
-    of_weight = -weight * float(model.body.centre[2])
-    others = {"heave": stiffness[2], "roll": stiffness[3] - of_weight, "pitch": stiffness[4] - of_weight}
-    bare = [name for name, other in others.items() if abs(other) <= NO_STIFFNESS * weight]
-    if not bare:
-        return []
-    keys = {"heave": "C33", "roll": "C44", "pitch": "C55"}
-    missing = " or ".join(keys[name] for name in bare)
-    text = f"buoyancy does not restore {' and '.join(bare)}: the platform file has no members and no {missing}"
-    return [Remark(text, warning=True)]
+    bare = unrestored_motions(model, rest)
+    motions, keys = " and ".join(bare), " or ".join(bare.values())
+    text = f"buoyancy does not restore {motions}: the platform file has no members and no {keys}"
+    return [Remark(text, warning=True)] if bare else []
 
 
 def wave_remarks(model: Model) -> list[Remark]:

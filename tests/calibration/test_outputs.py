@@ -513,5 +513,6 @@ def test_numbers_as_people_read_them() -> None:
     assert with_deviation(3.6292e8, 5.3e5) == "(3.6292 ± 0.0053)·10⁸"
     assert with_deviation(0.2, 30.0) == "0 ± 30"
     assert with_deviation(2.0, None) == with_deviation(2.0, 0.0) == "2.000"
-    assert [percent(x) for x in (0.0123, 2.5, 1e9, None)] == ["1.2 %", "250 %", "–", "–"]
+    assert [percent(x) for x in (0.0123, 2.5, 99.0, 1e9, -1e9)] == ["1.2 %", "250 %", "9900 %", "> 10000 %", "< -10000 %"]
+    assert [percent(x) for x in (np.inf, np.nan, None)] == ["–", "–", "–"]
     assert outputs.RESULT_FILE == "calibration.json"

@@ -11,6 +11,7 @@ import pytest
 
 import jaxhydro as jh
 from calibration.campaign.load_campaign import load_campaign
+from calibration.commands import calibrate_command
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.sea_fit import calibrate_in_waves
@@ -20,6 +21,7 @@ from jaxhydro.dynamics.conventions import Conventions, allowed_values
 from jaxhydro.dynamics.integrate import Method, clock
 from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.dynamics.time_steps import default_step, memory_step
+from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_tables import to_omega
 from jaxhydro.loads import LOADS
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
@@ -253,3 +255,8 @@ def test_a_message_is_plain_text():
     assert isinstance(error, KeyError) and isinstance(error, ValueError)
     assert nearest("PITCH", ["pitch"]) == "pitch" and nearest("x", ["pitch"]) == ""
     check(method=("a", ("a", None)), other=(None, ("a", None)))
+
+
+def test_a_search_of_another_name_is_refused(tmp_path):
+    with pytest.raises(InputError, match="expected multistart, found 'ga'"):
+        calibrate_command.run(load_campaign(CAMPAIGN), tmp_path, method="ga")
