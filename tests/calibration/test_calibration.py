@@ -277,14 +277,14 @@ def test_normal_equations_are_those_of_the_plain_residuals(ship_campaign: Campai
     both = jax.jit(jax.jacfwd(lambda z: (plain(z),) * 2, has_aux=True))
     slope, r = both(z)
     fit = LeastSquares((problem.up_to(until),), (weight,), mean, ridge)
-    found, (products,) = jax.jit(normal_equations)(unknowns, fit)
-    assert float(found.f) == pytest.approx(0.5 * float(r @ r), rel=1e-9)
+    equations, (products,) = jax.jit(normal_equations)(unknowns, fit)
+    assert float(equations.f) == pytest.approx(0.5 * float(r @ r), rel=1e-9)
     assert cost_of((np.asarray(products),), (np.asarray(weight),)) == pytest.approx(float(r[:-p] @ r[:-p]), rel=1e-9)
-    gradient, matrix = np.concatenate([found.grad.shared, found.grad.own.ravel()]), found.hessian.as_matrix()
+    gradient, matrix = np.concatenate([equations.grad.shared, equations.grad.own.ravel()]), equations.hessian.as_matrix()
     scale = np.abs(slope.T @ slope).max()
     np.testing.assert_allclose(matrix, slope.T @ slope, atol=1e-9 * scale)
     np.testing.assert_allclose(gradient, slope.T @ r, atol=1e-9 * np.abs(slope.T @ r).max())
-    step = found.hessian.solve(found.grad, 0.01 * scale)
+    step = equations.hessian.solve(equations.grad, 0.01 * scale)
     expected = np.linalg.solve(matrix + 0.01 * scale * np.eye(len(z)), gradient)
     np.testing.assert_allclose(np.concatenate([step.shared, step.own.ravel()]), expected, rtol=1e-8, atol=1e-12)
     h = 1e-5
@@ -312,13 +312,13 @@ def test_memory_of_white_and_of_coloured_noise() -> None:
     white = [correlated_samples(random.standard_normal(4000)) for _ in range(10)]
     assert np.mean(white) == pytest.approx(1.0, abs=0.15) and min(white) >= 1
     for rho in (0.5, 0.9):  # integrated autocorrelation (1 + rho) / (1 - rho)
-        found = []
+        memories = []
         for _ in range(10):
             x, e = np.zeros(20000), random.standard_normal(20000)
             for i in range(1, len(x)):
                 x[i] = rho * x[i - 1] + e[i]
-            found.append(correlated_samples(x))
-        assert np.mean(found) == pytest.approx((1 + rho) / (1 - rho), rel=0.15)
+            memories.append(correlated_samples(x))
+        assert np.mean(memories) == pytest.approx((1 + rho) / (1 - rho), rel=0.15)
     assert correlated_samples(np.zeros(100)) == correlated_samples(np.ones(5)) == 1.0
 
 
@@ -355,9 +355,11 @@ def test_what_no_record_touches_is_as_wide_as_its_prior() -> None:
     a, sigma = regression(np.random.default_rng(2))
     a[..., 1] = 0.0
     ridge, width = 1 / (np.array([1.5, 0.7]) * 20), np.array([1.5, 0.7])
-    found = sandwich_covariance(products_of(a, np.zeros(a.shape[:2])), 1 / sigma**2, sigma**2, np.ones((2, 1)), ridge, width)
-    assert found.deviation()[1] == pytest.approx(0.7, rel=1e-6)
-    assert found.deviation()[0] < 0.01
+    covariance = sandwich_covariance(
+        products_of(a, np.zeros(a.shape[:2])), 1 / sigma**2, sigma**2, np.ones((2, 1)), ridge, width
+    )
+    assert covariance.deviation()[1] == pytest.approx(0.7, rel=1e-6)
+    assert covariance.deviation()[0] < 0.01
 
 
 # fits: the ship
@@ -368,11 +370,11 @@ def test_the_truth_is_within_three_standard_deviations(ship) -> None:
     result, _ = ship
     assert result.converged and set(result.parameters) == set(SHIP_TRUE)
     for label, true in SHIP_TRUE.items():
-        one = result.parameters[label]
-        assert one.identifiable and one.standard_deviation is not None and not one.at_bound
-        assert abs(one.value - true) < 3 * one.standard_deviation
-        assert one.standard_deviation < 0.05 * true
-        assert one.start == float(model_of(SHIP).values[label])
+        parameter = result.parameters[label]
+        assert parameter.identifiable and parameter.standard_deviation is not None and not parameter.at_bound
+        assert abs(parameter.value - true) < 3 * parameter.standard_deviation
+        assert parameter.standard_deviation < 0.05 * true
+        assert parameter.start == float(model_of(SHIP).values[label])
     for test in result.tests:
         assert test.main.rmse == pytest.approx(SHIP_NOISE, rel=0.15)
     assert result.objective("fit") == pytest.approx(sum(t.main.relative for t in result.tests if t.use == "fit"))
@@ -394,14 +396,14 @@ def test_held_out_records_are_judged_with_the_fitted_coefficients(ship, ship_cam
     held = next(test for test in result.tests if test.id == "roll-3")
     assert held.use == "holdout" and result.objective("holdout") == pytest.approx(held.main.relative)
     assert held.main.rmse == pytest.approx(SHIP_NOISE, rel=0.15)
-    for label, one in result.parameters.items():
-        assert float(result.model.values[label]) == one.value
+    for label, parameter in result.parameters.items():
+        assert float(result.model.values[label]) == parameter.value
     # as if it were not there
     alone = dataclasses.replace(ship_campaign, records=ship_campaign.used("fit"))
     without = calibrate(alone)
     assert without.objective("holdout") is None
-    for label, one in result.parameters.items():
-        assert without.parameters[label].value == one.value
+    for label, parameter in result.parameters.items():
+        assert without.parameters[label].value == parameter.value
 
 
 @pytest.mark.slow
@@ -513,9 +515,9 @@ def test_a_zeroed_record_is_measured_from_the_equilibrium(heave) -> None:
     assert test.main.rmse == pytest.approx(SEMI_NOISE, rel=0.15)
     assert test.main.offset == pytest.approx(0.0, abs=3 * SEMI_NOISE)
     for label, true in SEMI_TRUE.items():
-        one = result.parameters[label]
-        if one.identifiable:
-            assert abs(one.value - true) < 3 * one.standard_deviation
+        parameter = result.parameters[label]
+        if parameter.identifiable:
+            assert abs(parameter.value - true) < 3 * parameter.standard_deviation
     assert result.parameters["pontoon.Ca_z"].value == pytest.approx(1.87, rel=0.01)
 
 
@@ -531,18 +533,18 @@ def test_what_is_not_free_stays_exactly_as_it_was(heave) -> None:
 @pytest.mark.slow
 def test_a_standard_deviation_is_given_where_identifiable(heave, ship) -> None:
     for result in (heave[0], ship[0]):
-        for one in result.parameters.values():
-            assert (one.standard_deviation is None) == (not one.identifiable)
+        for parameter in result.parameters.values():
+            assert (parameter.standard_deviation is None) == (not parameter.identifiable)
 
 
 @pytest.mark.slow
 def test_froude_scaled_records_give_the_same_coefficients(heave) -> None:
     full, scaled = heave
-    for label, one in full.parameters.items():
+    for label, parameter in full.parameters.items():
         other = scaled.parameters[label]
-        assert other.value == pytest.approx(one.value, rel=1e-5)
-        if one.identifiable:
-            assert other.standard_deviation == pytest.approx(one.standard_deviation, rel=1e-3)
+        assert other.value == pytest.approx(parameter.value, rel=1e-5)
+        if parameter.identifiable:
+            assert other.standard_deviation == pytest.approx(parameter.standard_deviation, rel=1e-3)
     assert scaled.objective("fit") == pytest.approx(full.objective("fit"), rel=1e-6)
     np.testing.assert_allclose(scaled.tests[0].time, full.tests[0].time, atol=1e-9)
 
@@ -564,8 +566,8 @@ def test_one_surge_decay_knows_the_sum_of_two_added_masses_and_neither(tmp_path:
     for label in ("column.Ca_t", "pontoon.Ca_t"):
         assert not result.parameters[label].identifiable
     assert any("do not determine" in note and "column.Ca_t" in note for note in result.notes)
-    mass, found = (float(linearised(m, jnp.zeros(6))[0][0, 0]) for m in (model, result.model))
-    assert found == pytest.approx(mass, rel=0.005)
+    mass, fitted = (float(linearised(m, jnp.zeros(6))[0][0, 0]) for m in (model, result.model))
+    assert fitted == pytest.approx(mass, rel=0.005)
     declared = float(linearised(model_of(document), jnp.zeros(6))[0][0, 0])
     assert abs(declared / mass - 1) > 0.02  # it had something to find
 
@@ -619,7 +621,7 @@ def test_the_measured_surge_of_focal_campaign_4() -> None:
 def test_twenty_far_starts_of_the_platform_all_arrive() -> None:
     from benchmarks.evidence.starts import outcomes
 
-    objectives = [one["objective"] for one in outcomes(20, processes=2)]
+    objectives = [outcome["objective"] for outcome in outcomes(20, processes=2)]
     assert len(objectives) == 20 and max(objectives) < 1.01 * min(objectives)
 
 

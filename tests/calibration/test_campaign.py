@@ -167,9 +167,9 @@ def text(separator, decimal=".", top=("t", "x", "p"), units=None, ending=""):
 )
 def test_delimited_text(tmp_path, name, content):
     (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
-    found = read_table(tmp_path / name)
-    assert list(found.columns)[:3] == ["t", "x", "p"]
-    np.testing.assert_allclose(found[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH], atol=6e-6)
+    table_read = read_table(tmp_path / name)
+    assert list(table_read.columns)[:3] == ["t", "x", "p"]
+    np.testing.assert_allclose(table_read[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH], atol=6e-6)
 
 
 def test_text_without_a_header_has_numbered_columns_and_a_manifest_may_count(tmp_path):
@@ -218,9 +218,9 @@ def test_matlab_73(tmp_path):
 def test_netcdf(tmp_path, engine):
     data = xr.Dataset({"x": ("t", SURGE), "p": ("t", PITCH), "draught": 20.0, "place": ("axis", [0.0, 1.0])}, {"t": T})
     data.to_netcdf(tmp_path / "a.nc", engine=engine)
-    found = read_table(tmp_path / "a.nc")
-    assert set(found.columns) == {"t", "x", "p"}
-    np.testing.assert_allclose(found[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH])
+    table_read = read_table(tmp_path / "a.nc")
+    assert set(table_read.columns) == {"t", "x", "p"}
+    np.testing.assert_allclose(table_read[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH])
 
 
 OUT = (
@@ -247,9 +247,9 @@ def outb(kind, names=("Time", "PtfmSurge", "PtfmPitch"), units=("(s)", "(m)", "(
 def test_openfast(tmp_path, name, content):
     pytest.importorskip("openfast_io")
     (tmp_path / name).write_bytes(content)
-    found = read_table(tmp_path / name)
-    assert list(found.columns) == ["Time", "PtfmSurge", "PtfmPitch"]
-    np.testing.assert_allclose(found.to_numpy(), np.c_[T, SURGE, PITCH], atol=1e-4)
+    table_read = read_table(tmp_path / name)
+    assert list(table_read.columns) == ["Time", "PtfmSurge", "PtfmPitch"]
+    np.testing.assert_allclose(table_read.to_numpy(), np.c_[T, SURGE, PITCH], atol=1e-4)
 
 
 def test_openfast_without_its_library_says_what_to_install(tmp_path, monkeypatch):
@@ -407,11 +407,11 @@ def test_zero_by_a_test_in_its_own_units(tmp_path):
     still = table(T, -500 + NOISE[0, :400], 0.5 + 0.01 * NOISE[1, :400], "t,x_mm,p", w=0.2 + 0.001 * NOISE[2, :400])
     wave = np.cos(2 * np.pi * T / 3)
     folder = write(tmp_path, document, {"r.csv": still, "d.csv": table(x=SURGE + 0.5), "s.csv": table(w=wave + 0.2)})
-    found = records(folder)
-    np.testing.assert_allclose(found["d-1"].values["surge"], 4 * SURGE, atol=2e-3)
-    np.testing.assert_allclose(found["sea"].wave, 4 * wave, atol=1e-3)
-    assert abs(found["rest"].values["surge"].mean()) < 1e-12 and found["d-1"].wave is None
-    assert found["rest"].values["surge"].std() == pytest.approx(4e-3, rel=0.2)
+    read = records(folder)
+    np.testing.assert_allclose(read["d-1"].values["surge"], 4 * SURGE, atol=2e-3)
+    np.testing.assert_allclose(read["sea"].wave, 4 * wave, atol=1e-3)
+    assert abs(read["rest"].values["surge"].mean()) < 1e-12 and read["d-1"].wave is None
+    assert read["rest"].values["surge"].std() == pytest.approx(4e-3, rel=0.2)
 
 
 def test_a_frozen_motion_is_left_out(tmp_path):
@@ -455,8 +455,8 @@ def test_one_column_for_one_test_and_none_for_another(tmp_path):
     document = manifest()
     document["tests"] += [{"id": "no-pitch", "kind": "static", "file": "n.csv", "channels": {"pitch": None}}]
     rows = "\n".join(f"{t:.1f},{n:.4f}" for t, n in zip(T, NOISE[0]))
-    found = records(write(tmp_path, document, {"n.csv": "t,x\n" + rows}))
-    assert set(found["no-pitch"].values) == {"surge"} and set(found["d-1"].values) == {"surge", "pitch"}
+    read = records(write(tmp_path, document, {"n.csv": "t,x\n" + rows}))
+    assert set(read["no-pitch"].values) == {"surge"} and set(read["d-1"].values) == {"surge", "pitch"}
 
 
 def test_a_numeric_id_is_a_name_and_each_file_is_read_once(tmp_path, monkeypatch):
@@ -471,7 +471,7 @@ def test_a_numeric_id_is_a_name_and_each_file_is_read_once(tmp_path, monkeypatch
     count = []
     monkeypatch.setattr(module, "read_table", lambda path, **how: count.append(path) or read_table(path, **how))
     series = read_series(*read_manifest(folder))
-    assert [one.test.id for one in series] == ["21337", "b"] and len(count) == 1
+    assert [entry.test.id for entry in series] == ["21337", "b"] and len(count) == 1
 
 
 # --------------------------------------------------------------------------------------------------------- checks
@@ -481,8 +481,8 @@ def spoilt(**changes):
     """A decay of which some samples are replaced: name -> {slice: value}."""
     columns = {"t": T.copy(), "x": SURGE.copy(), "p": PITCH.copy()}
     for name, places in changes.items():
-        for place, value in places.items():
-            columns[name][slice(*place)] = value
+        for index, value in places.items():
+            columns[name][slice(*index)] = value
     return table(**columns)
 
 
@@ -518,17 +518,17 @@ def spoilt(**changes):
 )
 def test_warnings(tmp_path, csv, words):
     campaign = load_campaign(write(tmp_path, files={"d.csv": csv}))
-    found = [str(finding) for finding in campaign.findings]
-    assert any(words in message for message in found), found
+    warnings = [str(finding) for finding in campaign.findings]
+    assert any(words in message for message in warnings), warnings
     record = campaign.records[0]
     assert np.all(np.diff(record.time) > 0) and all(np.all(np.isfinite(values)) for values in record.values.values())
 
 
 def test_what_is_held_out_is_not_fitted_too(tmp_path):
     """The same samples for both: said; another part of the file is another record."""
-    one = {"kind": "decay", "degree_of_freedom": "surge", "file": "d.csv"}
+    decay = {"kind": "decay", "degree_of_freedom": "surge", "file": "d.csv"}
     for window, said in ([0, 20], True), ([20, 40], False):
-        tests = [{"id": "a", "window": [0, 20], **one}, {"id": "b", "use": "holdout", "window": window, **one}]
+        tests = [{"id": "a", "window": [0, 20], **decay}, {"id": "b", "use": "holdout", "window": window, **decay}]
         found = messages(write(tmp_path, manifest(tests=tests)))
         assert any("held out, and the fitted test a has samples of it" in message for message in found) == said
 
@@ -549,8 +549,8 @@ def test_no_false_alarm(tmp_path, csv):
 
 def test_a_gap_is_no_spike(tmp_path):
     """A signal goes on elsewhere after one: that is said once."""
-    found = messages(write(tmp_path, files={"d.csv": spoilt(x={(50, 64): np.nan})}))
-    assert len(found) == 2 and "14 values missing" in found[1] and "a gap of" in found[0]
+    said = messages(write(tmp_path, files={"d.csv": spoilt(x={(50, 64): np.nan})}))
+    assert len(said) == 2 and "14 values missing" in said[1] and "a gap of" in said[0]
 
 
 def change(document, path, value):
@@ -709,8 +709,8 @@ def test_waves_that_are_not_in_the_file_and_zero_tests_without_a_channel(tmp_pat
     document["tests"][0] |= {"kind": "irregular"}
     assert "channel wave of test d-1: expected a column 'w'" in failure(load_campaign, write(tmp_path, document))
     wave = np.cos(2 * np.pi * T / 1.8)
-    found = messages(write(tmp_path, document, {"d.csv": table(w=wave)}))
-    assert "the waves have begun before the record" in found[0] and "wave_channel has no position" in found[1]
+    said = messages(write(tmp_path, document, {"d.csv": table(w=wave)}))
+    assert "the waves have begun before the record" in said[0] and "wave_channel has no position" in said[1]
     document = manifest(zero={"test": "d-2"})
     document["tests"].append({**D2, "channels": {"surge": None}})
     assert "expected a channel that the zero test has too" in failure(load_campaign, write(tmp_path, document))
@@ -831,8 +831,8 @@ cuts = st.lists(
 @given(cuts, st.just(".csv") | st.sampled_from(list(BASES)))
 def test_a_mutated_file_is_refused_or_read(tmp_path_factory, cuts, ending):
     content = BASES[ending]
-    for place, length, put in cuts:
-        start = int(place * len(content))
+    for index, length, put in cuts:
+        start = int(index * len(content))
         content = content[:start] + put + content[start + length :]
     path = tmp_path_factory.mktemp("fuzz") / f"d{ending}"
     path.write_bytes(content)

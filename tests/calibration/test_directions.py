@@ -56,19 +56,21 @@ def sum_of_two(a: float = 0.8, b: float = 0.36, sigma: float = 0.05, n: int = 40
 
 def test_two_that_enter_as_a_sum_have_its_weights_and_its_deviation() -> None:
     parameters, information, deviation = sum_of_two()
-    found = judged(parameters, information, source="1 surge decay")
-    assert len(found.weak) == 1 and np.isinf(found.spectrum[-1]) and (found.spectrum[:2] < IDENTIFIABLE_DEVIATION).all()
-    weak = found.weak[0]
+    findings = judged(parameters, information, source="1 surge decay")
+    assert (
+        len(findings.weak) == 1 and np.isinf(findings.spectrum[-1]) and (findings.spectrum[:2] < IDENTIFIABLE_DEVIATION).all()
+    )
+    weak = findings.weak[0]
     assert set(weak.movement) == {"column.Ca_t", "pontoon.Ca_t"}
     changes = np.array(list(weak.movement.values()))
     assert 0.8 * 1.2 * changes[0] + 0.36 * 0.51 * changes[1] == pytest.approx(0.0, abs=1e-9)
     assert np.abs(changes).max() == pytest.approx(0.1) and changes[0] > 0
-    known = weak.known
-    assert known is not None and not known.product and known.unit == "-"
-    assert known.weights == pytest.approx({"column.Ca_t": 1.0, "pontoon.Ca_t": 0.36 / 0.8})
-    assert known.value == pytest.approx(1.2 + 0.36 / 0.8 * 0.51)
-    assert known.standard_deviation == pytest.approx(deviation, rel=1e-6)
-    said = " | ".join(found.sentences())
+    combination = weak.known
+    assert combination is not None and not combination.product and combination.unit == "-"
+    assert combination.weights == pytest.approx({"column.Ca_t": 1.0, "pontoon.Ca_t": 0.36 / 0.8})
+    assert combination.value == pytest.approx(1.2 + 0.36 / 0.8 * 0.51)
+    assert combination.standard_deviation == pytest.approx(deviation, rel=1e-6)
+    said = " | ".join(findings.sentences())
     assert "1 surge decay cannot tell column.Ca_t from pontoon.Ca_t" in said
     assert "1.00 column.Ca_t + 0.450 pontoon.Ca_t = 1.4295 ± 0.0099 is known" in said
 
@@ -77,44 +79,44 @@ def test_the_deviation_of_a_combination_counts_what_else_is_unknown() -> None:
     """A sum whose level is confounded with a third parameter's: least squares on all three says how well it is known."""
     n, sigma = 30, 0.05
     slope = np.stack([np.ones(n), 0.5 * np.ones(n), np.linspace(0.5, 1.0, n)], axis=1)
-    found = judged(stated("a.Ca_t b.Ca_t c.Cd_t"), slope.T @ slope / sigma**2)
+    findings = judged(stated("a.Ca_t b.Ca_t c.Cd_t"), slope.T @ slope / sigma**2)
     both = np.stack([slope[:, 0], slope[:, 2]], axis=1)
     expected = sigma * math.sqrt(np.linalg.inv(both.T @ both)[0, 0])
-    assert found.weak[0].known is not None
-    assert found.weak[0].known.standard_deviation == pytest.approx(expected, rel=1e-6)
+    assert findings.weak[0].known is not None
+    assert findings.weak[0].known.standard_deviation == pytest.approx(expected, rel=1e-6)
 
 
 def test_in_different_units_a_product_is_known() -> None:
     value = np.array([2.0, 4e5])
     row = np.array([[1.0, 0.4]])
-    found = judged(stated("column.Cd_t linear_damping.B11", value, ("-", "N s/m")), row.T @ row / 0.03**2)
-    known = found.weak[0].known
-    assert known is not None and known.product and known.standard_deviation == pytest.approx(0.03)
-    assert known.weights == pytest.approx({"column.Cd_t": 1.0, "linear_damping.B11": 0.4})
-    assert known.value == pytest.approx(2.0 * 4e5**0.4)
-    assert "The product column.Cd_t^1.00 linear_damping.B11^0.40 is known to 3 %" in found.weak[0].sentence("these records")
+    findings = judged(stated("column.Cd_t linear_damping.B11", value, ("-", "N s/m")), row.T @ row / 0.03**2)
+    combination = findings.weak[0].known
+    assert combination is not None and combination.product and combination.standard_deviation == pytest.approx(0.03)
+    assert combination.weights == pytest.approx({"column.Cd_t": 1.0, "linear_damping.B11": 0.4})
+    assert combination.value == pytest.approx(2.0 * 4e5**0.4)
+    assert "The product column.Cd_t^1.00 linear_damping.B11^0.40 is known to 3 %" in findings.weak[0].sentence("these records")
 
 
 def test_two_open_directions_of_three_are_told_with_their_one_sum() -> None:
     row = np.array([[1.0, 0.7, 0.4]])
-    found = judged(stated("a.Cd_t b.Cd_t c.Cd_t"), row.T @ row / 0.02**2)
-    assert len(found.weak) == 2
-    for weak in found.weak:
+    findings = judged(stated("a.Cd_t b.Cd_t c.Cd_t"), row.T @ row / 0.02**2)
+    assert len(findings.weak) == 2
+    for weak in findings.weak:
         assert weak.known is not None
         assert weak.known.weights == pytest.approx({"a.Cd_t": 1.0, "b.Cd_t": 0.7, "c.Cd_t": 0.4})
         assert weak.known.standard_deviation == pytest.approx(0.02)
-    assert len({fix.label for fix in found.fixes}) == 2
+    assert len({fix.label for fix in findings.fixes}) == 2
     # what is known is said once, and of what is fixed nothing more
-    assert " | ".join(found.sentences()).count("Their weighted sum a.Cd_t") <= 1
-    assert found.fixes[0].label not in found.fixes[1].after and len(found.fixes[1].after) == 1
+    assert " | ".join(findings.sentences()).count("Their weighted sum a.Cd_t") <= 1
+    assert findings.fixes[0].label not in findings.fixes[1].after and len(findings.fixes[1].after) == 1
 
 
 def test_many_unknown_directions_are_told_briefly() -> None:
     labels = [f"{x}.Cd_t" for x in "abcdefgh"]
     row = np.array([[1.0, *[0.5] * 6, 1e-4]])
-    found = judged(stated(" ".join(labels)), row.T @ row / 0.02**2 + np.diag([0.0] * 7 + [900.0]))
-    said = found.sentences()
-    assert len(found.weak) == 6 and sum(" cannot tell " in x for x in said) == MAX_REPORTED_DIRECTIONS
+    findings = judged(stated(" ".join(labels)), row.T @ row / 0.02**2 + np.diag([0.0] * 7 + [900.0]))
+    said = findings.sentences()
+    assert len(findings.weak) == 6 and sum(" cannot tell " in x for x in said) == MAX_REPORTED_DIRECTIONS
     assert sum("act alike (collinearity index without bound" in x for x in said) == 1
     assert any(x.startswith("2 further combinations of ") and x.endswith("are not known to 25 % either") for x in said)
     assert not any("0.00" in x or " -0 " in x for x in said)
@@ -123,28 +125,28 @@ def test_many_unknown_directions_are_told_briefly() -> None:
 def test_unknown_directions_are_told_one_pair_at_a_time() -> None:
     """Two sums known: the null space has any basis, and that of the two pairs is the one to be told."""
     rows = np.array([[1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0]])
-    found = judged(stated("a.Ca_t b.Ca_t a.Cd_t b.Cd_t"), rows.T @ rows / 0.02**2)
-    assert sorted(sorted(weak.movement) for weak in found.weak) == [["a.Ca_t", "b.Ca_t"], ["a.Cd_t", "b.Cd_t"]]
+    findings = judged(stated("a.Ca_t b.Ca_t a.Cd_t b.Cd_t"), rows.T @ rows / 0.02**2)
+    assert sorted(sorted(weak.movement) for weak in findings.weak) == [["a.Ca_t", "b.Ca_t"], ["a.Cd_t", "b.Cd_t"]]
     mixed = np.array([[1.0, 1.0], [1.0, -1.0], [0.0, 0.0]]) / math.sqrt(2)
     np.testing.assert_allclose(np.sort(np.abs(varimax(mixed)), axis=None), [0, 0, 0, 0, 1, 1], atol=1e-6)
 
 
 def test_an_untouched_parameter_is_said_so() -> None:
     information = np.diag([400.0, 0.0, 900.0])
-    found = judged(stated("column.Ca_t column.Cd_z pontoon.Cd_t"), information)
-    assert found.untouched == ("column.Cd_z",) and not found.weak
-    assert "no record responds to column.Cd_z: fix it, or add tests that move it" in found.sentences()
-    both = replace(found, untouched=("a", "b"), at_bound=("c", "d")).sentences()
+    findings = judged(stated("column.Ca_t column.Cd_z pontoon.Cd_t"), information)
+    assert findings.untouched == ("column.Cd_z",) and not findings.weak
+    assert "no record responds to column.Cd_z: fix it, or add tests that move it" in findings.sentences()
+    both = replace(findings, untouched=("a", "b"), at_bound=("c", "d")).sentences()
     assert "no record responds to a and b: fix them, or add tests that move them" in both
     assert "c and d stand at a bound and are taken as fixed there" in both
-    assert found.spectrum == pytest.approx([1 / 30, 1 / 20, np.inf])
+    assert findings.spectrum == pytest.approx([1 / 30, 1 / 20, np.inf])
 
 
 def test_a_parameter_at_its_bound_is_taken_as_fixed() -> None:
     parameters, information, _ = sum_of_two()
-    found = judged(parameters, information, at_bound=("pontoon.Ca_t",))
-    assert not found.weak and found.untouched == ()
-    assert "pontoon.Ca_t stands at a bound and is taken as fixed there" in found.sentences()
+    findings = judged(parameters, information, at_bound=("pontoon.Ca_t",))
+    assert not findings.weak and findings.untouched == ()
+    assert "pontoon.Ca_t stands at a bound and is taken as fixed there" in findings.sentences()
 
 
 def test_the_prior_is_not_counted() -> None:
@@ -158,16 +160,16 @@ def test_the_prior_is_not_counted() -> None:
 
 def test_what_to_fix_is_what_helps_the_others_most() -> None:
     covariance = np.array([[1.0, 0.98, 0.0], [0.98, 1.02, 0.0], [0.0, 0.0, 0.01]])
-    found = judged(stated("a.Ca_t b.Ca_t c.Ca_t"), np.linalg.inv(covariance))
-    assert len(found.weak) == 1
-    c, brute = found.covariance, []
+    findings = judged(stated("a.Ca_t b.Ca_t c.Ca_t"), np.linalg.inv(covariance))
+    assert len(findings.weak) == 1
+    c, brute = findings.covariance, []
     for j in range(3):  # conditional covariance, by inverting what is left
         left = np.delete(np.delete(np.linalg.inv(c), j, 0), j, 1)
         brute.append(np.delete(np.diag(c), j).sum() - np.trace(np.linalg.inv(left)))
-    fix = found.fixes[0]
-    assert fix.label == found.parameters.labels[int(np.argmax(brute))]
+    fix = findings.fixes[0]
+    assert fix.label == findings.parameters.labels[int(np.argmax(brute))]
     assert fix.reduction == pytest.approx(max(brute))
-    i = found.parameters.labels.index(fix.label)
+    i = findings.parameters.labels.index(fix.label)
     other = 1 - i
     assert fix.share == pytest.approx(max(brute) / np.delete(np.diag(c), i).sum())
     assert fix.after == pytest.approx({"ab"[other] + ".Ca_t": math.sqrt(c[other, other] - c[0, 1] ** 2 / c[i, i])})
@@ -196,8 +198,8 @@ def brute_force(slope: np.ndarray, variance: np.ndarray, shared: int) -> np.ndar
 def test_own_unknowns_are_eliminated_as_by_inverting_everything() -> None:
     slope, products = regression()
     variance = np.array([[0.1, 0.4], [0.2, 0.3], [0.7, 0.1]])
-    found = shared_information(products, 1 / variance, variance, np.ones((3, 2)), 3)
-    np.testing.assert_allclose(found, brute_force(slope, variance, 3), rtol=1e-9)
+    actual = shared_information(products, 1 / variance, variance, np.ones((3, 2)), 3)
+    np.testing.assert_allclose(actual, brute_force(slope, variance, 3), rtol=1e-9)
     # weighed otherwise, with samples that count as fewer: the inverse of the sandwich that the fit reports
     weight, inflation = np.array([[1.0, 2.0], [3.0, 1.0], [1.0, 1.0]]), np.array([[1.0, 4.0], [2.0, 1.0], [9.0, 1.0]])
     other = shared_information(products, weight, variance, inflation, 3)
@@ -212,16 +214,16 @@ def test_the_spectrum_is_that_of_the_projected_jacobian() -> None:
     rows = slope[0].reshape(-1, 5) / sigma
     q = np.linalg.qr(rows[:, 3:])[0]
     projected = rows[:, :3] - q @ (q.T @ rows[:, :3])
-    found = judged(stated("a.Ca_t b.Ca_t c.Ca_t"), information)
-    np.testing.assert_allclose(found.spectrum, 1 / np.linalg.svd(projected, compute_uv=False), rtol=1e-9)
+    findings = judged(stated("a.Ca_t b.Ca_t c.Ca_t"), information)
+    np.testing.assert_allclose(findings.spectrum, 1 / np.linalg.svd(projected, compute_uv=False), rtol=1e-9)
 
 
 def test_the_collinearity_index_is_its_definition() -> None:
     random = np.random.default_rng(2)
     slope = random.standard_normal((50, 4)) * np.array([1.0, 30.0, 1e-2, 1.0])
     slope[:, 1] = 30 * slope[:, 0] + random.standard_normal(50)
-    found = judged(stated("a.Ca_t b.Ca_t c.Ca_t d.Cd_t"), 1e6 * slope.T @ slope)
-    groups = {group.labels: group.gamma for group in found.collinear}
+    findings = judged(stated("a.Ca_t b.Ca_t c.Ca_t d.Cd_t"), 1e6 * slope.T @ slope)
+    groups = {group.labels: group.gamma for group in findings.collinear}
     # three pairs and one triple of inertia; drag has no partner
     assert len(groups) == 4 and all("d.Cd_t" not in labels for labels in groups)
     index = {"a.Ca_t": 0, "b.Ca_t": 1, "c.Ca_t": 2}
@@ -230,31 +232,31 @@ def test_the_collinearity_index_is_its_definition() -> None:
         unit = columns / np.linalg.norm(columns, axis=0)
         assert gamma == pytest.approx(1 / np.linalg.svd(unit, compute_uv=False)[-1], rel=1e-8)
     assert groups["a.Ca_t", "b.Ca_t"] > 10
-    assert any("a.Ca_t and b.Ca_t act alike" in x for x in found.sentences())
+    assert any("a.Ca_t and b.Ca_t act alike" in x for x in findings.sentences())
     assert collinearity(np.diag([1e-9, 1e9])) == pytest.approx(1.0)
     assert math.isinf(collinearity(np.ones((2, 2))))
 
 
 def test_the_same_test_again_halves_the_variances() -> None:
     information = np.array([[400.0, 100.0], [100.0, 900.0]])
-    found = judged(stated("a.Ca_t b.Cd_t"), information, width=1e6)
-    more = expected_information(found, information, "again")
+    findings = judged(stated("a.Ca_t b.Cd_t"), information, width=1e6)
+    more = expected_information(findings, information, "again")
     np.testing.assert_allclose(more.after**2, more.before**2 / 2, rtol=1e-6)
     assert more.gain == pytest.approx(0.5 * 2 * math.log(2), rel=1e-6)
 
 
 def test_the_test_that_tells_two_apart_is_ranked_first_and_leaves_nothing_weak() -> None:
     parameters, information, _ = sum_of_two()
-    found = judged(parameters, information)
+    findings = judged(parameters, information)
     row = np.array([[1.0, -1.0, 0.0]])
     other = row.T @ row / 0.1**2
-    ranked = rank_tests(found, {"nothing": np.zeros((3, 3)), "the same": information, "another": other})
-    assert [one.name for one in ranked] == ["another", "the same", "nothing"]
+    ranked = rank_tests(findings, {"nothing": np.zeros((3, 3)), "the same": information, "another": other})
+    assert [candidate.name for candidate in ranked] == ["another", "the same", "nothing"]
     assert not ranked[0].weak and len(ranked[1].weak) == len(ranked[2].weak) == 1
     assert ranked[2].gain == 0 and "nothing much better known" in ranked[2].sentence()
-    posterior = np.linalg.inv(np.linalg.inv(found.covariance) + other)
+    posterior = np.linalg.inv(np.linalg.inv(findings.covariance) + other)
     np.testing.assert_allclose(ranked[0].after, np.sqrt(np.diag(posterior)), rtol=1e-8)
-    determinants = np.linalg.slogdet(found.covariance)[1] - np.linalg.slogdet(posterior)[1]
+    determinants = np.linalg.slogdet(findings.covariance)[1] - np.linalg.slogdet(posterior)[1]
     assert ranked[0].gain == pytest.approx(0.5 * determinants, rel=1e-8)
 
 
@@ -285,10 +287,10 @@ def surge():
 
 
 def test_a_surge_decay_knows_the_added_mass_of_the_hull_and_not_whose_it_is(surge) -> None:
-    _, _, found, model = surge
-    weak = next(weak for weak in found.weak if "column.Ca_t" in weak.movement)
+    _, _, findings, model = surge
+    weak = next(weak for weak in findings.weak if "column.Ca_t" in weak.movement)
     assert set(weak.movement) == {"column.Ca_t", "pontoon.Ca_t"} and weak.known is not None
-    said = " | ".join(found.sentences())
+    said = " | ".join(findings.sentences())
     assert "1 surge decay cannot tell column.Ca_t from pontoon.Ca_t" in said
     assert "no record responds to column.Cd_z" in said
     # the weights are what either coefficient adds to the mass in surge
@@ -308,17 +310,17 @@ def test_a_surge_decay_knows_the_added_mass_of_the_hull_and_not_whose_it_is(surg
 
 
 def test_the_information_of_a_made_decay_is_that_of_the_fitted_one(surge) -> None:
-    fit, tests, found, model = surge
+    fit, tests, findings, model = surge
     noise = effective_noise(fit, tests)
     assert noise["surge"] == pytest.approx(NOISE, rel=0.5)
     period = jh.natural_modes(model).of("surge")
     again = decay_information(model, fit.decays.problem.space, "surge", 6.0, noise, cycles=LENGTH / period, interval=3.3)
-    first, second = np.sqrt(np.diag(found.information)), np.sqrt(np.diag(again))
+    first, second = np.sqrt(np.diag(findings.information)), np.sqrt(np.diag(again))
     np.testing.assert_allclose(second[:3], first[:3], rtol=0.03)
 
 
 def test_a_pitch_decay_is_worth_more_than_another_surge_decay(surge) -> None:
-    fit, tests, found, model = surge
+    fit, tests, findings, model = surge
     noise = effective_noise(fit, tests) | {"pitch": math.radians(0.01)}
     made = {
         "another surge decay": decay_information(
@@ -328,9 +330,9 @@ def test_a_pitch_decay_is_worth_more_than_another_surge_decay(surge) -> None:
             model, fit.decays.problem.space, "pitch", math.radians(5.0), {"pitch": noise["pitch"]}
         ),
     }
-    first, second = rank_tests(found, made)
+    first, second = rank_tests(findings, made)
     assert first.name == "a pitch decay" and first.gain > second.gain + 1
-    index = found.parameters.labels.index("pontoon.Ca_t")
+    index = findings.parameters.labels.index("pontoon.Ca_t")
     assert first.after[index] < IDENTIFIABLE_DEVIATION < second.after[index]
     assert "pontoon.Ca_t from" in first.sentence() and "0 weak directions left" in first.sentence()
 

@@ -50,10 +50,10 @@ def noise(kind: str, random: np.random.Generator, n: int = N) -> tuple[np.ndarra
 def test_the_colour_of_noise_is_found(kind: str) -> None:
     random = np.random.default_rng(1)
     rows = [noise(kind, random)[0] for _ in range(6)]
-    found, variance, _ = whittle([periodogram(x, np.zeros(N // 2 + 1), STEP) for x in rows])
+    colour, variance, _ = whittle([periodogram(x, np.zeros(N // 2 + 1), STEP) for x in rows])
     assert len(set(variance)) == 1 and variance[0] == pytest.approx(1.0, rel=0.3)
     true, frequency = noise(kind, random)[1], np.array([0.05, 0.2, 0.5])
-    np.testing.assert_allclose(found.density(frequency), true.density(frequency), rtol=0.35)
+    np.testing.assert_allclose(colour.density(frequency), true.density(frequency), rtol=0.35)
 
 
 def test_records_of_unlike_noise_keep_their_own_variance() -> None:
@@ -69,10 +69,10 @@ def test_groups_share_a_colour_unless_they_differ() -> None:
     white, slow = (
         [periodogram(noise(kind, random)[0], np.zeros(N // 2 + 1), STEP) for _ in range(3)] for kind in ("white", "drifting")
     )
-    (one, _), (other, _) = fit_colours([slow[:1], slow[1:]])
-    assert one == other and one.peak > 1
-    (one, _), (other, _) = fit_colours([white, slow])
-    assert one.peak == 0 and other.peak > 1
+    (first, _), (second, _) = fit_colours([slow[:1], slow[1:]])
+    assert first == second and first.peak > 1
+    (first, _), (second, _) = fit_colours([white, slow])
+    assert first.peak == 0 and second.peak > 1
 
 
 def test_a_score_of_white_and_of_lasting_noise_has_its_own_variance() -> None:
@@ -92,12 +92,12 @@ def test_what_a_fit_has_taken_from_its_residual_is_given_back() -> None:
     basis = np.linalg.qr(waves.T)[0]
     leverage = (np.abs(np.fft.rfft(basis, axis=0)) ** 2).sum(axis=1) / N
     assert leverage.max() <= 1 + 1e-9
-    found = []
+    colours = []
     for _ in range(20):
         e = random.standard_normal(N)
-        found.append(periodogram(e - basis @ (basis.T @ e), leverage, STEP))
-    assert np.mean([one.variance for one in found]) == pytest.approx(1.0, rel=0.05)
-    assert whittle(found)[0].density(np.array([0.3]))[0] == pytest.approx(1.0, rel=0.2)
+        colours.append(periodogram(e - basis @ (basis.T @ e), leverage, STEP))
+    assert np.mean([colour.variance for colour in colours]) == pytest.approx(1.0, rel=0.05)
+    assert whittle(colours)[0].density(np.array([0.3]))[0] == pytest.approx(1.0, rel=0.2)
 
 
 # a small body's decays
@@ -148,41 +148,41 @@ def test_white_deviations_are_too_small_where_errors_last(ringing: Likelihood) -
 @pytest.mark.parametrize("which", ["ship", "ringing"])
 def test_the_profile_agrees_with_the_covariance_where_the_model_is_nearly_linear(which: str, request) -> None:
     likely: Likelihood = request.getfixturevalue(which)
-    found = profile(likely, "added_mass.A44")
-    np.testing.assert_allclose(found.interval, found.laplace, rtol=1e-4)
-    width = found.laplace[1] - found.laplace[0]
-    assert found.upper - found.lower == pytest.approx(width, rel=0.03)
-    assert found.drop.min() == 0 and (found.drop[[0, -1]] > 3.84).all() and (np.diff(found.grid) > 0).all()
-    assert found.holds(found.estimate) and not found.holds(found.lower - width)
-    assert "between" in str(found)
+    curve = profile(likely, "added_mass.A44")
+    np.testing.assert_allclose(curve.interval, curve.laplace, rtol=1e-4)
+    width = curve.laplace[1] - curve.laplace[0]
+    assert curve.upper - curve.lower == pytest.approx(width, rel=0.03)
+    assert curve.drop.min() == 0 and (curve.drop[[0, -1]] > 3.84).all() and (np.diff(curve.grid) > 0).all()
+    assert curve.holds(curve.estimate) and not curve.holds(curve.lower - width)
+    assert "between" in str(curve)
 
 
 def test_the_other_unknowns_are_refitted(ship: Likelihood) -> None:
     """With the others held, the sum of squares would grow by the diagonal of the information: many times as much."""
     label = "linear_damping.B44"
-    i, found = ship.index(label), profile(ship, label)
-    off = found.coordinate - ship.estimate[i]
-    alone = ship.information[i, i] * off[0] ** 2 / found.nu
-    assert alone > 5 * found.drop[0] > 0
+    i, curve = ship.index(label), profile(ship, label)
+    off = curve.coordinate - ship.estimate[i]
+    alone = ship.information[i, i] * off[0] ** 2 / curve.nu
+    assert alone > 5 * curve.drop[0] > 0
 
 
 @measured
 def test_a_profile_finds_its_way_where_the_others_follow_on_a_curve() -> None:
     """The roll of KVLCC2: linear damping takes over where quadratic damping goes, far beyond what the covariance says."""
     campaign = load_campaign(MEASURED / "kvlcc2")
-    found = profile(likelihood(campaign, calibrate(campaign)), "quadratic_damping.B44")
-    below = found.grid < found.estimate
-    assert found.lower is None and (np.diff(found.drop[below]) < 0).all() and found.drop[below].max() < 3.84
-    assert found.upper is not None and found.upper < found.laplace[1]
+    curve = profile(likelihood(campaign, calibrate(campaign)), "quadratic_damping.B44")
+    below = curve.grid < curve.estimate
+    assert curve.lower is None and (np.diff(curve.drop[below]) < 0).all() and curve.drop[below].max() < 3.84
+    assert curve.upper is not None and curve.upper < curve.laplace[1]
 
 
 def test_what_the_records_do_not_bound_is_open(tmp_path: Path) -> None:
     """Releases of half a degree: quadratic damping is at most so much, and may be nothing."""
     campaign = campaign_of(tmp_path, size=0.04)
     likely = likelihood(campaign, calibrate(campaign))
-    found = profile(likely, "quadratic_damping.B44")
-    assert found.lower is None and found.upper is not None and found.upper > SHIP_TRUE["quadratic_damping.B44"]
-    assert "at most" in str(found) and found.holds(1e-3)
+    curve = profile(likely, "quadratic_damping.B44")
+    assert curve.lower is None and curve.upper is not None and curve.upper > SHIP_TRUE["quadratic_damping.B44"]
+    assert "at most" in str(curve) and curve.holds(1e-3)
 
 
 def test_an_unknown_label_is_told_what_there_is(ship: Likelihood) -> None:
@@ -195,32 +195,32 @@ def test_an_unknown_label_is_told_what_there_is(ship: Likelihood) -> None:
 @pytest.mark.parametrize("which", ["ship", "ringing"])
 def test_blocks_scatter_as_the_covariance_says(which: str, request) -> None:
     likely: Likelihood = request.getfixturevalue(which)
-    found = bootstrap_blocks(likely, 96, seed=1)
-    assert found.unsettled == 0 and found.value.shape == (96, 3)
-    ratio = found.deviation() / likely.deviation()
+    bootstrap = bootstrap_blocks(likely, 96, seed=1)
+    assert bootstrap.unsettled == 0 and bootstrap.value.shape == (96, 3)
+    ratio = bootstrap.deviation() / likely.deviation()
     assert (ratio > 0.55).all() and (ratio < 1.6).all()
     for label in FREE:
         for kind in ("percentile", "basic", "normal"):
-            low, high = found.interval(label, kind=kind)
+            low, high = bootstrap.interval(label, kind=kind)
             assert low < likely.value(label, likely.estimate[likely.index(label)]) < high
 
 
 def test_the_same_seed_gives_the_same_draws_and_progress_is_told(ship: Likelihood) -> None:
     said: list[tuple[int, int]] = []
-    one = bootstrap_blocks(ship, 20, seed=4, progress=lambda *now: said.append(now))
-    other, third = bootstrap_blocks(ship, 20, seed=4), bootstrap_blocks(ship, 20, seed=5)
-    np.testing.assert_array_equal(one.coordinate, other.coordinate)
-    assert np.abs(one.coordinate - third.coordinate).max() > 0
+    first = bootstrap_blocks(ship, 20, seed=4, progress=lambda *now: said.append(now))
+    same, third = bootstrap_blocks(ship, 20, seed=4), bootstrap_blocks(ship, 20, seed=5)
+    np.testing.assert_array_equal(first.coordinate, same.coordinate)
+    assert np.abs(first.coordinate - third.coordinate).max() > 0
     assert said == [(16, 20), (20, 20)]
 
 
 def test_repeats_are_drawn_anew(ship: Likelihood) -> None:
-    found = bootstrap_repeats(ship, 32, seed=0)
-    assert found.groups == {"roll-1": ("roll-1", "roll-3"), "roll-2": ("roll-2",)} and found.unsettled == 0
+    bootstrap = bootstrap_repeats(ship, 32, seed=0)
+    assert bootstrap.groups == {"roll-1": ("roll-1", "roll-3"), "roll-2": ("roll-2",)} and bootstrap.unsettled == 0
     # one of two repeats, twice: two outcomes, on either side of the estimate
-    outcomes = np.unique(found.coordinate.round(7), axis=0)
+    outcomes = np.unique(bootstrap.coordinate.round(7), axis=0)
     assert len(outcomes) == 2
-    assert ((outcomes - found.estimate)[0] * (outcomes - found.estimate)[1] < 0).all()
+    assert ((outcomes - bootstrap.estimate)[0] * (outcomes - bootstrap.estimate)[1] < 0).all()
 
 
 def test_groups_of_repeats() -> None:
@@ -284,11 +284,11 @@ def test_chains_that_are_stopped(monkeypatch: pytest.MonkeyPatch, least: int) ->
 
 
 def test_nuts_agrees_with_the_covariance(ship: Likelihood) -> None:
-    found = sample(ship, draws=100, warmup=40, chains=2, seed=3)
-    assert found.value.shape == (2, 100, 3) and found.divergences == 0
-    assert (found.r_hat < 1.05).all() and (found.effective > 80).all()
-    np.testing.assert_allclose(found.deviation(), ship.deviation(), rtol=0.25)
-    low, high = found.interval("added_mass.A44")
+    samples = sample(ship, draws=100, warmup=40, chains=2, seed=3)
+    assert samples.value.shape == (2, 100, 3) and samples.divergences == 0
+    assert (samples.r_hat < 1.05).all() and (samples.effective > 80).all()
+    np.testing.assert_allclose(samples.deviation(), ship.deviation(), rtol=0.25)
+    low, high = samples.interval("added_mass.A44")
     assert low < SHIP_TRUE["added_mass.A44"] < high
 
 
@@ -302,8 +302,8 @@ def test_without_numpyro_the_extra_is_named(ship: Likelihood, monkeypatch: pytes
 
 
 def test_figures_are_drawn(ship: Likelihood) -> None:
-    found: Profile = profile(ship, "linear_damping.B44")
+    curve: Profile = profile(ship, "linear_damping.B44")
     with style():
-        assert len(profile_figure(found).axes) == 1
+        assert len(profile_figure(curve).axes) == 1
         draws = bootstrap_repeats(ship, 4)
         assert len(draws_figure(draws, *FREE[:2]).axes[0].lines) == 2

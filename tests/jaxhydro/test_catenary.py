@@ -77,9 +77,9 @@ def solved(x, z, parts: Segments) -> jax.Array:
 @eqx.filter_jit
 def slopes(x, z, parts: Segments) -> jax.Array:
     """Change of horizontal and vertical tension (rows) with the distances (columns)."""
-    one, none = jnp.ones_like(x), jnp.zeros_like(x)
+    unit, zero = jnp.ones_like(x), jnp.zeros_like(x)
     force = lambda a, b: jnp.stack(end_tension(a, b, parts))  # noqa: E731
-    return jnp.stack([jax.jvp(force, (x, z), along)[1] for along in ((one, none), (none, one))], axis=1)
+    return jnp.stack([jax.jvp(force, (x, z), along)[1] for along in ((unit, zero), (zero, unit))], axis=1)
 
 
 @cache
@@ -106,8 +106,8 @@ def test_lines_of_several_types_are_those_of_moorpy(name: str) -> None:
     row = MOORPY["chains"][name]
     x, z, parts = row["case"]
     rows = [(length, weight, stiffness) for length, stiffness, weight in reversed(parts)]
-    found = solved(jnp.array([x]), jnp.array([z]), segments(*rows))
-    assert_allclose(found[:, 0], row["tension"], rtol=1e-6)
+    actual = solved(jnp.array([x]), jnp.array([z]), segments(*rows))
+    assert_allclose(actual[:, 0], row["tension"], rtol=1e-6)
 
 
 def test_segments_of_one_type_are_one_segment() -> None:
@@ -132,15 +132,15 @@ def test_random_lines_are_in_balance() -> None:
     horizontal, vertical = np.asarray(solved(x, z, parts))
     tight = np.asarray(horizontal) > 0
     assert 0.5 < tight.mean() < 1
-    found = np.stack(one_program(reach)(np.where(tight, horizontal, 1.0), vertical, parts))
-    assert_allclose(found[:, tight], np.stack([x, z])[:, tight], rtol=1e-9)
+    actual = np.stack(one_program(reach)(np.where(tight, horizontal, 1.0), vertical, parts))
+    assert_allclose(actual[:, tight], np.stack([x, z])[:, tight], rtol=1e-9)
 
 
 def test_without_weight_it_is_the_straight_spring() -> None:
     """EA (D / l0 - 1) along the chord."""
     x, z, stiffness, length = 800.0, 600.0, 2e8, 990.0
-    found = solved(jnp.array([x]), jnp.array([z]), segments((length, 1e-9, stiffness), grounded=False))
-    assert_allclose(found[:, 0], stiffness * (1000 / length - 1) * np.array([0.8, 0.6]), rtol=1e-9)
+    actual = solved(jnp.array([x]), jnp.array([z]), segments((length, 1e-9, stiffness), grounded=False))
+    assert_allclose(actual[:, 0], stiffness * (1000 / length - 1) * np.array([0.8, 0.6]), rtol=1e-9)
 
 
 def test_an_inextensible_line_on_the_seabed() -> None:
@@ -148,15 +148,15 @@ def test_an_inextensible_line_on_the_seabed() -> None:
     a, z, length, weight = 300.0, 150.0, 900.0, 1000.0
     hanging = math.sqrt(z**2 + 2 * z * a)
     x = length - hanging + a * math.asinh(hanging / a)
-    found = solved(jnp.array([x]), jnp.array([z]), segments((length, weight, 1e18)))
-    assert_allclose(found[:, 0], [a * weight, weight * hanging], rtol=1e-9)
+    actual = solved(jnp.array([x]), jnp.array([z]), segments((length, weight, 1e18)))
+    assert_allclose(actual[:, 0], [a * weight, weight * hanging], rtol=1e-9)
 
 
 @pytest.mark.slow
 def test_force_and_stiffness_are_continuous() -> None:
     """Where a line gets slack, lifts off the seabed, and where friction holds the anchor's tension at zero."""
     parts = segments((850.0, 5800.0, 3e9), friction=0.3)
-    many = jax.tree.map(lambda one: on_device(np.repeat(one, 4001, axis=-1)), parts)
+    many = jax.tree.map(lambda part: on_device(np.repeat(part, 4001, axis=-1)), parts)
     x = np.linspace(640.0, 860.0, 4001)
     z = np.full_like(x, 186.0)
     tension, stiffness = np.asarray(solved(x, z, many))[0], np.asarray(slopes(x, z, many))[0, 0]
@@ -176,10 +176,10 @@ def test_volturnus_s_as_published() -> None:
     alone = moored(model)
     force = np.asarray(jax.jit(lambda q: alone.force_at_rest(q))(jnp.zeros(6)))
     assert force[2] == pytest.approx(-6061.98e3, rel=4e-3) and np.abs(np.delete(force, 2)).max() < 1e-3
-    found = np.asarray(mooring_stiffness(model, jnp.zeros(6)))
-    known = {(0, 0): 7.19e4, (2, 2): 6.07e4, (3, 3): 2.586e8, (4, 4): 2.586e8, (5, 5): 2.524e8, (0, 4): 1.144e6}
-    for (i, j), value in known.items():
-        assert found[i, j] == pytest.approx(value, rel=5e-3)
+    actual = np.asarray(mooring_stiffness(model, jnp.zeros(6)))
+    published = {(0, 0): 7.19e4, (2, 2): 6.07e4, (3, 3): 2.586e8, (4, 4): 2.586e8, (5, 5): 2.524e8, (0, 4): 1.144e6}
+    for (i, j), value in published.items():
+        assert actual[i, j] == pytest.approx(value, rel=5e-3)
 
 
 PARAMETERS = {
@@ -215,8 +215,8 @@ def test_gradients_of_a_motion() -> None:
     values = {label: model.values[label] for label in labels}
 
     def end(values, adjoint="forward"):
-        found = jh.simulate(model.at_values(values), times, position={"surge": 12.0}, step=0.5, method="rk4", adjoint=adjoint)
-        return found.position[-1, 0] + 10 * found.position[-1, 2]
+        motion = jh.simulate(model.at_values(values), times, position={"surge": 12.0}, step=0.5, method="rk4", adjoint=adjoint)
+        return motion.position[-1, 0] + 10 * motion.position[-1, 2]
 
     forward = jax.jacfwd(end)(values)
     reverse = jax.grad(lambda values: end(values, "reverse"))(values)
@@ -257,10 +257,10 @@ SCHEMA_FAULTS = [
 @pytest.mark.parametrize(("path", "value", "start", "end"), SCHEMA_FAULTS)
 def test_mistakes_in_the_file(path: tuple, value: Any, start: str, end: str) -> None:
     mooring = copy.deepcopy(VOLTURNUS)
-    place: Any = mooring
+    section: Any = mooring
     for key in path[:-1]:
-        place = place[key]
-    place[path[-1]] = value
+        section = section[key]
+    section[path[-1]] = value
     with pytest.raises(InputError) as caught:
         platform(mooring)
     assert f"mooring.{start}" in str(caught.value) and end in str(caught.value)

@@ -113,9 +113,9 @@ def test_a_neutral_value_is_constant_coefficients(name: str, speed: str) -> None
     plain = only(build(COLUMN, PONTOON, drag_speed=speed), MorisonDrag)
     changed = with_law(plain, at_neutral(law_of(name, plain)))
     for sea in (jh.StillWater(), SEA):
-        found, _ = acting(changed, POSITION, VELOCITY, lively(changed), sea)
+        actual, _ = acting(changed, POSITION, VELOCITY, lively(changed), sea)
         expected, _ = acting(plain, POSITION, VELOCITY, lively(plain), sea)
-        assert_allclose(found, expected, atol=1e-15 * np.abs(expected).max(), rtol=1e-14)
+        assert_allclose(actual, expected, atol=1e-15 * np.abs(expected).max(), rtol=1e-14)
         moved, _ = acting(with_law(plain, law_of(name, plain)), POSITION, VELOCITY, lively(changed), sea)
         assert name == "constant" or not np.allclose(moved, expected, rtol=1e-3)
 
@@ -141,13 +141,13 @@ def test_gradients_are_finite_at_rest(name: str) -> None:
     force = lambda y: acting.__wrapped__(model.at_values(y[2]), jnp.zeros(6), *y[:2], jh.StillWater())  # noqa: E731
     slopes = one_program(jax.jacrev(force))
     for velocity, memory in ((jnp.zeros(6), model.rest().memory), (VELOCITY, lively(model))):
-        found = slopes((velocity, memory, model.values))
-        assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(found))
+        actual = slopes((velocity, memory, model.values))
+        assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(actual))
     memories = [lively(model, seed) for seed in range(3)]
     loop = [acting(model, POSITION, VELOCITY, memory, SEA) for memory in memories]
     stacked = jax.tree.map(lambda *leaves: np.stack(leaves), *memories)
-    one = lambda memory, velocity: acting.__wrapped__(model, POSITION, velocity, memory, SEA)  # noqa: E731
-    batch = eqx.filter_jit(jax.vmap(one))(stacked, np.stack(3 * [VELOCITY]))
+    action = lambda memory, velocity: acting.__wrapped__(model, POSITION, velocity, memory, SEA)  # noqa: E731
+    batch = eqx.filter_jit(jax.vmap(action))(stacked, np.stack(3 * [VELOCITY]))
     for whole, *parts in zip(*map(jax.tree.leaves, (batch, *loop)), strict=True):
         whole, *parts = map(np.asarray, (whole, *parts))
         assert whole.dtype == np.float64 and np.isfinite(whole).all()
@@ -159,9 +159,9 @@ def test_without_a_cutoff_there_is_no_filter() -> None:
     """fc = 0 is the other neutral value of the high-pass: what is remembered stays nothing."""
     changed = only(with_laws({**HIGH_PASS, "cutoff": 0.0}, {**HIGH_PASS, "cutoff": 0.0}), MorisonDrag)
     plain = only(build(COLUMN, PONTOON), MorisonDrag)
-    found, rate = acting(changed, POSITION, VELOCITY, changed.rest().memory, SEA)
+    actual, rate = acting(changed, POSITION, VELOCITY, changed.rest().memory, SEA)
     expected = acting(plain, POSITION, VELOCITY, plain.rest().memory, SEA)[0]
-    assert_allclose(found, expected, rtol=1e-13)
+    assert_allclose(actual, expected, rtol=1e-13)
     assert all(bool((leaf == 0).all()) for leaf in jax.tree.leaves(rate))
 
 
@@ -216,7 +216,7 @@ def test_the_filter_is_that_of_hydrodyn() -> None:
         return 1.2 * xp.sin(2 * math.pi * 0.012 * t) + 0.8 * xp.sin(2 * math.pi * 0.1 * t + 1.0) + 0.3 * xp.sin(0.9 * t)
 
     times = np.arange(0.0, 200.0, 0.1)
-    found = driven(column(law="high_pass", cutoff=cutoff, low_share=share), speed, times)[0][:, 0]
+    actual = driven(column(law="high_pass", cutoff=cutoff, low_share=share), speed, times)[0][:, 0]
     errors = []
     for substeps in (10, 20):
         fine = np.arange(0, len(times) * substeps) * 0.1 / substeps
@@ -224,7 +224,7 @@ def test_the_filter_is_that_of_hydrodyn() -> None:
         u = -speed(fine, np)
         high = lfilter([alpha, -alpha], [1.0, -alpha], u, zi=[alpha * 0.0])[0]
         expected = UNIT * ((1 - share) * np.abs(high) * high + share * np.abs(u) * u)
-        errors.append(np.abs(found - expected[::substeps]).max() / np.abs(expected).max())
+        errors.append(np.abs(actual - expected[::substeps]).max() / np.abs(expected).max())
     assert errors[1] < 0.002
     assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.05)
 
@@ -260,11 +260,11 @@ def test_slow_motion_in_waves_is_damped_as_theory_says() -> None:
 
     forces, _ = driven(column(law="high_pass", cutoff=cutoff, low_share=share), speed, times)
     last = times >= 400.0
-    found = -2 * np.mean(forces[last, 0] * np.cos(2 * math.pi * slow * times[last])) / small
+    damping = -2 * np.mean(forces[last, 0] * np.cos(2 * math.pi * slow * times[last])) / small
     gain, gain_fast = (1 / math.sqrt(1 + (cutoff / f) ** 2) for f in (slow, fast))
     plain = UNIT * 4 / math.pi * large
     expected = plain * (share + (1 - share) * gain_fast * gain**2)
-    assert found == pytest.approx(expected, rel=2e-3)
+    assert damping == pytest.approx(expected, rel=2e-3)
     assert expected < 0.3 * plain
 
 
@@ -332,7 +332,7 @@ def test_heave_decay_of_a_buoy(law: dict) -> None:
     """(m + rho Ca 2/3 pi r^3) z'' = -rho g A z + 1/2 rho Cd A (...), the law written out here and solved by scipy."""
     model = with_laws(z=law, members=(COLUMN,), **BUOY)
     times = np.arange(0.0, 120.0, 0.5)
-    found = jh.free_decay(model, {"heave": 4.0}, times, step=0.25)["heave"]
+    heave = jh.free_decay(model, {"heave": 4.0}, times, step=0.25)["heave"]
     area = math.pi * 25
     mass, drag = BODY["mass"] + RHO * COEFFICIENTS["Ca_z"] * 2 / 3 * math.pi * 125, 0.5 * RHO * CD_Z * area
     suction, kind = law.get("suction", 1.0 if law["law"] == "suction_side" else 0.0), law["law"]
@@ -355,7 +355,7 @@ def test_heave_decay_of_a_buoy(law: dict) -> None:
         return [v, (-RHO * G * area * z + drag * push) / mass, *rates]
 
     expected = solve_ivp(slope, (0, 120), [4.0, 0, 0, 0, 0], t_eval=times, rtol=1e-10, atol=1e-12, method="DOP853").y[0]
-    assert_allclose(found, expected, atol=2e-4)
+    assert_allclose(heave, expected, atol=2e-4)
 
 
 def test_suction_acts_where_the_flow_leaves() -> None:
@@ -405,9 +405,9 @@ def test_slow_motion_has_a_coefficient_of_its_own(share: float, powers: dict[str
     whole, fast = force(plain, VELOCITY, POSITION), force(plain, VELOCITY - SLOW, POSITION)
     model = with_law(plain, SlowMotionLaw(low_share=share, cutoff=0.05, law=law))
     memory = jax.tree.map(lambda leaf: jnp.asarray(SLOW), model.rest().memory)
-    found, rate = acting(model, POSITION, VELOCITY, memory, jh.StillWater())
+    actual, rate = acting(model, POSITION, VELOCITY, memory, jh.StillWater())
     expected = share * whole + (1 - share) * fast
-    assert_allclose(found, expected, rtol=1e-10, atol=1e-10 * np.abs(whole).max())
+    assert_allclose(actual, expected, rtol=1e-10, atol=1e-10 * np.abs(whole).max())
     assert_allclose(jax.tree.leaves(rate)[0], 2 * math.pi * 0.05 * (VELOCITY - SLOW), rtol=1e-13)
 
 
@@ -416,8 +416,8 @@ def test_slow_motion_in_a_current() -> None:
     model = with_law(build(COLUMN), SlowMotionLaw(low_share=0.3)).with_effect(Current(x=1.0))
     slow = jnp.array([0.4, 0, 0, 0, 0, 0])
     memory = jax.tree.map(lambda leaf: slow, model.rest().memory)
-    found, _ = acting(model, jnp.zeros(6), slow, memory, jh.StillWater())
-    assert float(found[0]) == pytest.approx(UNIT * (0.3 * 0.6**2 + 0.7 * 1.0**2), rel=1e-9)
+    actual, _ = acting(model, jnp.zeros(6), slow, memory, jh.StillWater())
+    assert float(actual[0]) == pytest.approx(UNIT * (0.3 * 0.6**2 + 0.7 * 1.0**2), rel=1e-9)
 
 
 # simulations, their gradients, and what is worked out at rest
@@ -484,11 +484,11 @@ def test_what_is_worked_out_at_rest() -> None:
     rest = jh.equilibrium(changed)
     assert_allclose(rest, jh.equilibrium(plain), atol=1e-12)
     assert_allclose(jh.natural_modes(changed, rest).period, jh.natural_modes(plain, rest).period, rtol=1e-12)
-    one, other = (model_damping(model, "heave", rest) for model in (plain, changed))
-    assert other.quadratic == pytest.approx(one.quadratic, rel=1e-9)
+    constant, filtered = (model_damping(model, "heave", rest) for model in (plain, changed))
+    assert filtered.quadratic == pytest.approx(constant.quadratic, rel=1e-9)
     powers = model_damping(small(KEULEGAN_CARPENTER, KEULEGAN_CARPENTER), "heave", rest)
     most = ((0.1**2) / (5.0**2 + 0.1**2)) ** (-1 / 6)
-    assert powers.quadratic == pytest.approx(most * one.quadratic, rel=1e-9)
+    assert powers.quadratic == pytest.approx(most * constant.quadratic, rel=1e-9)
 
 
 # the platform file
@@ -536,8 +536,8 @@ def test_laws_of_a_model_given_to_another() -> None:
     given = with_drag_laws(build(COLUMN, PONTOON), laws)
     assert given.values.keys() == declared.values.keys()
     memory = lively(declared)
-    found, expected = (acting(model, POSITION, VELOCITY, memory, SEA) for model in (given, declared))
-    jax.tree.map(lambda a, b: assert_allclose(a, b, rtol=1e-12), found, expected)
+    actual, expected = (acting(model, POSITION, VELOCITY, memory, SEA) for model in (given, declared))
+    jax.tree.map(lambda a, b: assert_allclose(a, b, rtol=1e-12), actual, expected)
     assert drag_laws_of(build(COLUMN, PONTOON)) == {} and plain_drag(declared) == []
     with pytest.raises(ValueError, match="expected a coefficient of plain Morison drag"):
         with_drag_laws(declared, laws)

@@ -33,18 +33,18 @@ RUN = SHARED / "openfast" / "ss1_nwt"
 def table(seed: int = 5) -> np.ndarray:
     """A Hermitian table of six modes."""
     rng = np.random.default_rng(seed)
-    one = rng.normal(0, 2e4, (6, 9, 9)) + 1j * rng.normal(0, 1e4, (6, 9, 9))
-    return 0.5 * (one + np.conj(np.swapaxes(one, 1, 2)))
+    values = rng.normal(0, 2e4, (6, 9, 9)) + 1j * rng.normal(0, 1e4, (6, 9, 9))
+    return 0.5 * (values + np.conj(np.swapaxes(values, 1, 2)))
 
 
-def by_pairs(sea: jh.IrregularSea, time: float, found: np.ndarray) -> np.ndarray:
+def by_pairs(sea: jh.IrregularSea, time: float, tables: np.ndarray) -> np.ndarray:
     """The double sum, T by SciPy's bilinear interpolation."""
     waves = sea.components
-    one = np.asarray(waves.complex_amplitude()) * np.exp(1j * np.asarray(waves.omega) * time)
+    amplitudes = np.asarray(waves.complex_amplitude()) * np.exp(1j * np.asarray(waves.omega) * time)
     omega = np.asarray(waves.omega)
     pairs = np.stack(np.meshgrid(omega, omega, indexing="ij"), axis=-1)
-    parts = [RegularGridInterpolator((GRID, GRID), t, bounds_error=False, fill_value=0.0)(pairs) for t in found]
-    return np.array([(np.outer(one, one.conj()) * part).sum().real for part in parts])
+    parts = [RegularGridInterpolator((GRID, GRID), t, bounds_error=False, fill_value=0.0)(pairs) for t in tables]
+    return np.array([(np.outer(amplitudes, amplitudes.conj()) * part).sum().real for part in parts])
 
 
 @pytest.mark.parametrize("newman", [False, True])
@@ -60,8 +60,8 @@ def test_the_force_is_the_double_sum_over_pairs(newman: bool) -> None:
     for time in (10.0, 36.5, 107.25):
         exact = 0.7 * by_pairs(sea, time, whole)
         for met in (prepared, sea, sea.direct()):
-            found, _ = acts(model, np.zeros(6), np.zeros(6), (None,), met, time)
-            assert_allclose(found, exact, atol=1e-8 * np.abs(exact).max())
+            actual, _ = acts(model, np.zeros(6), np.zeros(6), (None,), met, time)
+            assert_allclose(actual, exact, atol=1e-8 * np.abs(exact).max())
 
 
 def test_in_a_regular_wave_it_is_the_drift_curve() -> None:
@@ -70,10 +70,10 @@ def test_in_a_regular_wave_it_is_the_drift_curve() -> None:
     model = model_of(build(COLUMN), DriftTransfer(Transfer.of(GRID, whole), 1.0))
     for k, omega in enumerate(GRID):
         sea = jh.regular_wave(0.8, 2 * math.pi / omega, WATER, phase=0.4)
-        found, _ = acts(model, np.zeros(6), np.zeros(6), (None,), sea, 7.7)
-        assert_allclose(found, 0.4**2 * whole[:, k, k].real, rtol=1e-9)
-    found, _ = acts(model, np.zeros(6), np.zeros(6), (None,), jh.regular_wave(0.8, 2 * math.pi / 2.5, WATER), 7.7)
-    assert not found.any()
+        actual, _ = acts(model, np.zeros(6), np.zeros(6), (None,), sea, 7.7)
+        assert_allclose(actual, 0.4**2 * whole[:, k, k].real, rtol=1e-9)
+    actual, _ = acts(model, np.zeros(6), np.zeros(6), (None,), jh.regular_wave(0.8, 2 * math.pi / 2.5, WATER), 7.7)
+    assert not actual.any()
 
 
 def test_a_sea_without_the_transfer_function_is_refused() -> None:
@@ -94,7 +94,7 @@ def test_a_simulation_drifts_by_it() -> None:
     waves = jh.spectrum_components(lambda w: jh.jonswap(w, 3.0, 9.0), 400.0, model.environment, low=0.06, cutoff=0.18, seed=1)
     sea, times = jh.IrregularSea(waves, model.environment), np.arange(0.0, 400.0, 1.0)
     load = DriftTransfer(Transfer.of(GRID, mean), 1.0)
-    surge = [np.asarray(jh.simulate(one, times, sea)["surge"]) for one in (model, model.with_effect(load))]
+    surge = [np.asarray(jh.simulate(simulated, times, sea)["surge"]) for simulated in (model, model.with_effect(load))]
     stiffness = float(np.asarray(linearised(model, jh.equilibrium(model))[1])[0, 0])
     expected = 3e4 * float((np.asarray(waves.amplitude) ** 2).sum()) / stiffness
     assert (surge[1] - surge[0])[200:].mean() == pytest.approx(expected, rel=0.15)
@@ -130,15 +130,15 @@ def dense(transfer: Transfer) -> np.ndarray:
 
 def test_a_file_is_read_with_its_units(tmp_path: Path) -> None:
     """rho g L for forces, rho g L^2 for moments; one heading of two, and modes that are left out are none."""
-    one, other = table(1), table(2)
-    path = written(tmp_path, rows_of(one) + rows_of(other, 30.0, (0, 2, 4)))
+    first, second = table(1), table(2)
+    path = written(tmp_path, rows_of(first) + rows_of(second, 30.0, (0, 2, 4)))
     unit = 1025 * 9.81 * np.array([2.0, 2, 2, 4, 4, 4])[:, None, None]
-    found = read_transfer(path, 1025.0, 9.81, length=2.0)
-    assert_allclose(found.omega, GRID, rtol=1e-8)
+    transfer = read_transfer(path, 1025.0, 9.81, length=2.0)
+    assert_allclose(transfer.omega, GRID, rtol=1e-8)
     # eta = Re A exp(i omega t): the first period's amplitude is not the conjugate one
-    assert_allclose(dense(found), unit * one, atol=1e-6 * np.abs(unit * one).max())
+    assert_allclose(dense(transfer), unit * first, atol=1e-6 * np.abs(unit * first).max())
     few = dense(read_transfer(path, 1025.0, 9.81, length=2.0, heading=390.0))
-    assert_allclose(few[4], (unit * other)[4], atol=1e-6 * np.abs(unit * other).max())
+    assert_allclose(few[4], (unit * second)[4], atol=1e-6 * np.abs(unit * second).max())
     assert not few[[1, 3, 5]].any()
 
 
@@ -180,8 +180,8 @@ def test_a_platform_file_names_one(tmp_path: Path) -> None:
     model = jh.load_model(path)
     assert requested_table_labels(model) == {"drift_transfer.share"}
     scales = {"surge": NoticeableScales(5.0, 0.1, 1e5, 2e7)}
-    known = {waves: [one.effect for one in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
-    assert "drift_transfer" in known[True] and "drift_transfer" not in known[False]
+    effects = {waves: [candidate.effect for candidate in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
+    assert "drift_transfer" in effects[True] and "drift_transfer" not in effects[False]
     path.write_text(text + "\ndrift: {file: none.12d}\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"none\.12d: expected a \.12d file, found no such file"):
         jh.load_model(path)

@@ -47,13 +47,13 @@ def forces(seed: int = 5) -> np.ndarray:
     return rng.normal(0, 2e6, (6, 9)) + 1j * rng.normal(0, 1e6, (6, 9))
 
 
-def by_sum(sea: jh.IrregularSea, time: float, table: np.ndarray, place=(0.0, 0.0)) -> np.ndarray:
+def by_sum(sea: jh.IrregularSea, time: float, table: np.ndarray, position=(0.0, 0.0)) -> np.ndarray:
     """The sum over components, X by NumPy's straight lines."""
     waves = sea.components
     omega, along = np.asarray(waves.omega), np.asarray(vector(waves))
-    one = np.asarray(complex_amplitude(waves)) * np.exp(1j * (omega * time - np.asarray(place) @ along))
+    amplitudes = np.asarray(complex_amplitude(waves)) * np.exp(1j * (omega * time - np.asarray(position) @ along))
     at = [np.interp(omega, GRID, x.real, 0, 0) + 1j * np.interp(omega, GRID, x.imag, 0, 0) for x in table]
-    return (np.array(at) @ one).real
+    return (np.array(at) @ amplitudes).real
 
 
 @pytest.mark.parametrize("order", [1, 2])
@@ -68,8 +68,8 @@ def test_the_force_is_the_sum_over_components(order: int, heading: float) -> Non
         for time in (10.0, 36.5, 107.25):
             exact = 0.7 * by_sum(sea, time, table, position[:2])
             for met, error in ((prepared, 2e-5), (sea, 1e-9), (direct, 1e-9)):
-                found, _ = acts(model, position, REST, model.rest().memory, met, time)
-                assert_allclose(found, exact, atol=error * np.abs(exact).max())
+                actual, _ = acts(model, position, REST, model.rest().memory, met, time)
+                assert_allclose(actual, exact, atol=error * np.abs(exact).max())
 
 
 @pytest.mark.slow
@@ -84,11 +84,14 @@ def test_it_takes_the_place_of_the_strips_own() -> None:
     earth = by_sum(irregular(), 20.0, forces(), AWAY[:2])
     theirs = np.concatenate([turn.T @ earth[:3], turn.T @ earth[3:]])
     for share in (0.0, 0.4, 1.0):
-        found, _ = acts(model.with_values({"computed_excitation.share": share}), AWAY, REST, model.rest().memory, sea, 20.0)
-        assert_allclose(found, (1 - share) * own + share * theirs, atol=1e-9 * np.abs(theirs).max())
+        actual, _ = acts(model.with_values({"computed_excitation.share": share}), AWAY, REST, model.rest().memory, sea, 20.0)
+        assert_allclose(actual, (1 - share) * own + share * theirs, atol=1e-9 * np.abs(theirs).max())
     still = [
-        np.asarray(one.rate(jnp.zeros(()), one.rest(), jh.StillWater()).velocity)
-        for one in (build(COLUMN, PONTOON), build(COLUMN, PONTOON).with_effect(ComputedExcitation(table.excitation, 1.0)))
+        np.asarray(model_alone.rate(jnp.zeros(()), model_alone.rest(), jh.StillWater()).velocity)
+        for model_alone in (
+            build(COLUMN, PONTOON),
+            build(COLUMN, PONTOON).with_effect(ComputedExcitation(table.excitation, 1.0)),
+        )
     ]
     assert_allclose(still[1], still[0], rtol=1e-12, atol=1e-12)
 
@@ -102,13 +105,13 @@ def test_what_strips_do_in_small_waves_is_their_excitation() -> None:
     for k, w in enumerate(omega):
         for phase in (0.0, -0.5 * math.pi):  # Re X, and Re (-i X)
             sea = jh.regular_wave(0.02, 2 * math.pi / w, WATER, phase=phase)
-            found, _ = acts(strips, REST, REST, none, sea, 0.0)
-            table[:, k] += found / 0.01 * (1.0 if phase == 0 else 1j)
+            actual, _ = acts(strips, REST, REST, none, sea, 0.0)
+            table[:, k] += actual / 0.01 * (1.0 if phase == 0 else 1j)
     sea = irregular()
     own = [acts(strips, REST, REST, none, sea.direct(), t)[0] for t in (5.0, 41.3)]
     load = ComputedExcitation(Excitation.of(omega, table), 1.0)
-    found = [acts(model_of(strips, load), REST, REST, (load.rest(),), sea.direct(), t)[0] for t in (5.0, 41.3)]
-    assert_allclose(found, own, atol=2e-3 * np.abs(own).max())
+    actual = [acts(model_of(strips, load), REST, REST, (load.rest(),), sea.direct(), t)[0] for t in (5.0, 41.3)]
+    assert_allclose(actual, own, atol=2e-3 * np.abs(own).max())
 
 
 def test_a_motion_in_the_waves_does_not_move_the_force() -> None:
@@ -116,11 +119,11 @@ def test_a_motion_in_the_waves_does_not_move_the_force() -> None:
     sea, table = irregular(), forces()
     model = model_of(build(COLUMN), ComputedExcitation(Excitation.of(GRID, table), 1.0))
     fast = (jnp.array([[2.0, 1.0], [0.0, 0.0]]),)
-    found, _ = acts(model, AWAY * [1, 1, 1, 0, 0, 0], REST, fast, sea, 36.5)
-    assert_allclose(found, by_sum(sea, 36.5, table, (5.0, -4.0)), rtol=1e-9)
+    actual, _ = acts(model, AWAY * [1, 1, 1, 0, 0, 0], REST, fast, sea, 36.5)
+    assert_allclose(actual, by_sum(sea, 36.5, table, (5.0, -4.0)), rtol=1e-9)
     mean = dataclasses.replace(model, conventions=dataclasses.replace(model.conventions, waves_at="mean"))
-    found, _ = acts(mean, AWAY * [1, 1, 1, 0, 0, 0], REST, fast, sea, 36.5)
-    assert_allclose(found, by_sum(sea, 36.5, table), rtol=1e-9)
+    actual, _ = acts(mean, AWAY * [1, 1, 1, 0, 0, 0], REST, fast, sea, 36.5)
+    assert_allclose(actual, by_sum(sea, 36.5, table), rtol=1e-9)
 
 
 @pytest.mark.parametrize("period", [12.0, 50.0, 200.0])
@@ -173,8 +176,8 @@ def test_it_moves_with_the_waves() -> None:
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 400, (0.0,)), exciting=model.excitation)
     exact = by_sum(sea, 36.5, table, (-4.0, 0.0))
     for met, error in ((prepared, 2e-5), (sea, 1e-9)):
-        found, _ = acts(model, REST, REST, model.rest().memory, met, 36.5)
-        assert_allclose(found, exact, atol=error * np.abs(exact).max())
+        actual, _ = acts(model, REST, REST, model.rest().memory, met, 36.5)
+        assert_allclose(actual, exact, atol=error * np.abs(exact).max())
 
 
 def test_a_sea_without_it_is_refused() -> None:
@@ -197,8 +200,8 @@ def test_a_simulation_follows_it() -> None:
     sea, times = jh.IrregularSea(waves, model.environment), np.arange(0.0, 300.0, 1.0)
     silent = ComputedExcitation(Excitation.of(GRID, 0 * forces()), 1.0)
     heave = [
-        np.asarray(jh.simulate(one, times, sea)["heave"])
-        for one in (model, model.with_effect(silent), model.with_effect(ComputedExcitation(silent.excitation)))
+        np.asarray(jh.simulate(simulated, times, sea)["heave"])
+        for simulated in (model, model.with_effect(silent), model.with_effect(ComputedExcitation(silent.excitation)))
     ]
     assert heave[1].std() < 1e-6 * heave[0].std()
     assert_allclose(heave[2], heave[0], rtol=1e-9, atol=1e-12)
@@ -226,14 +229,14 @@ def test_a_file_is_read_with_its_units(tmp_path: Path) -> None:
     """rho g L^2 for forces, rho g L^3 for moments; one heading of two, and modes that are left out are none."""
     path = written(tmp_path, rows_of(forces(1)) + rows_of(forces(2), 30.0, (0, 2, 4)))
     unit = RHO * G * np.array([4.0, 4, 4, 8, 8, 8])[:, None]
-    found = read_excitation(path, RHO, G, length=2.0)
-    assert_allclose(found.omega, GRID, rtol=1e-8)
-    assert_allclose(found.force, unit * forces(1), atol=1e-7 * np.abs(unit * forces(1)).max())
+    table = read_excitation(path, RHO, G, length=2.0)
+    assert_allclose(table.omega, GRID, rtol=1e-8)
+    assert_allclose(table.force, unit * forces(1), atol=1e-7 * np.abs(unit * forces(1)).max())
     few = np.asarray(read_excitation(path, RHO, G, length=2.0, heading=390.0).force)
     assert_allclose(few[4], (unit * forces(2))[4], atol=1e-7 * np.abs(unit * forces(2)).max())
     assert not few[[1, 3, 5]].any()
-    between = np.asarray(one_program(Excitation.at)(found, np.array([0.5 * (GRID[3] + GRID[4]), 0.1, 2.3])))
-    force = np.asarray(found.force)
+    between = np.asarray(one_program(Excitation.at)(table, np.array([0.5 * (GRID[3] + GRID[4]), 0.1, 2.3])))
+    force = np.asarray(table.force)
     assert_allclose(between[:, 0], 0.5 * (force[:, 3] + force[:, 4]), rtol=1e-9)
     assert not between[:, 1:].any()
 
@@ -273,12 +276,12 @@ def test_a_platform_file_names_one(tmp_path: Path) -> None:
     model = jh.load_model(path)
     assert requested_table_labels(model) == {"computed_excitation.share"}
     scales = {"surge": NoticeableScales(5.0, 0.1, 1e5, 2e7)}
-    known = {waves: [one.effect for one in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
-    assert "computed_excitation" in known[True] and "computed_excitation" not in known[False]
+    effects = {waves: [candidate.effect for candidate in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
+    assert "computed_excitation" in effects[True] and "computed_excitation" not in effects[False]
     np.savetxt(tmp_path / "hull.12d", [[p, q, 0, 0, 1, 1.0, 0, 1.0, 0] for p in (8.0, 12.0) for q in (8.0, 12.0) if p <= q])
     both = "\nexcitation: {file: hull.3, use: candidate}\ndrift: {file: hull.12d, use: candidate}\n"
     path.write_text(text + both, encoding="utf-8")
-    some = {one.effect: one for one in catalogue(jh.load_model(path), scales, True, 1.0)[0]}
+    some = {candidate.effect: candidate for candidate in catalogue(jh.load_model(path), scales, True, 1.0)[0]}
     assert some["potential_flow"].amplitudes == (*some["computed_excitation"].amplitudes, *some["drift_transfer"].amplitudes)
     path.write_text(text + "\nexcitation: {file: none.3}\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"none\.3: expected a \.3 file, found no such file"):

@@ -313,8 +313,8 @@ SEA = jh.regular_wave(3.0, 9.0, jh.Environment(RHO, 200.0, G), heading=0.4, phas
 
 def test_the_example_has_every_registered_load() -> None:
     """Nothing escapes the contract below."""
-    known = {kind for effect in everything().effects for kind in types(effect)}
-    assert known | {DiffractionCorrection} == {MorisonDrag, *EFFECTS.values()}
+    present = {kind for effect in everything().effects for kind in types(effect)}
+    assert present | {DiffractionCorrection} == {MorisonDrag, *EFFECTS.values()}
 
 
 def with_one_effect(name: str) -> jh.Model:
@@ -359,11 +359,11 @@ def test_compiled_or_not_and_one_by_one_or_together(name: str) -> None:
     loop = [wrench(model, q, v, SEA) for q, v in zip(positions, velocities, strict=True)]
     batch = eqx.filter_jit(wrenches)(model, positions, velocities, SEA)
     eager = wrench.__wrapped__(model, positions[0], velocities[0], SEA)
-    for whole, one, *parts in zip(batch, eager, *loop, strict=True):
-        whole, one, *parts = map(np.asarray, (whole, one, *parts))
+    for whole, uncompiled, *parts in zip(batch, eager, *loop, strict=True):
+        whole, uncompiled, *parts = map(np.asarray, (whole, uncompiled, *parts))
         scale = np.abs(whole).max() + 1e-300
         assert_allclose(whole / scale, np.stack(parts) / scale, atol=1e-13)
-        assert_allclose(one / scale, parts[0] / scale, atol=1e-13)
+        assert_allclose(uncompiled / scale, parts[0] / scale, atol=1e-13)
 
 
 @pytest.mark.parametrize("name", WATER_EFFECTS)
@@ -403,11 +403,11 @@ def test_waves_at_the_reference_position() -> None:
         plain = WaveModel(data, waves, 0.1, 0.5, pontoon_ends=True, displaced=stays)
         for position in (moved, leaning):
             turn = Rotation.from_euler("ZYX", position[:2:-1]).as_matrix()
-            found = force(model, position=position, sea=sea) - force(model, position=position)
-            found = np.concatenate([turn @ found[:3], turn @ found[3:]])
-            assert_allclose(found, plain.wave_load(0.0, position), atol=2e-3 * np.abs(found).max())
-    model, there = jh.build(jh.Platform.model_validate(data | {"waves_at": "mean"})), moved * [1, 1, 0, 0, 0, 0]
-    along = [force(model, position=x, sea=sea) - force(model, position=x) for x in (there, 0 * there)]
+            actual = force(model, position=position, sea=sea) - force(model, position=position)
+            actual = np.concatenate([turn @ actual[:3], turn @ actual[3:]])
+            assert_allclose(actual, plain.wave_load(0.0, position), atol=2e-3 * np.abs(actual).max())
+    model, displaced = jh.build(jh.Platform.model_validate(data | {"waves_at": "mean"})), moved * [1, 1, 0, 0, 0, 0]
+    along = [force(model, position=x, sea=sea) - force(model, position=x) for x in (displaced, 0 * displaced)]
     assert_allclose(*along, atol=1e-9 * np.abs(along).max())
 
 
@@ -460,43 +460,43 @@ def test_all_loads_together_are_their_sum() -> None:
 
 def test_drag_of_a_column_in_surge() -> None:
     """1/2 rho Cd D T |u| u at mid-draught, by hand: D = 10 m, T = 20 m, u = 1.3 m/s."""
-    found = force(only(build(COLUMN), MorisonDrag), [1.3, 0, 0, 0, 0, 0])
+    actual = force(only(build(COLUMN), MorisonDrag), [1.3, 0, 0, 0, 0, 0])
     expected = -0.5 * RHO * 1.1 * 10 * 20 * 1.3**2
-    assert_allclose(found, [expected, 0, 0, 0, -10 * expected, 0], rtol=1e-11, atol=1e-4)
+    assert_allclose(actual, [expected, 0, 0, 0, -10 * expected, 0], rtol=1e-11, atol=1e-4)
 
 
 def test_drag_of_a_column_in_pitch() -> None:
     """Integral of 1/2 rho Cd D |q z| q z and of z times it, by quad."""
     q = 0.03
-    found = force(only(build(COLUMN), MorisonDrag), [0, 0, 0, 0, q, 0])
+    actual = force(only(build(COLUMN), MorisonDrag), [0, 0, 0, 0, q, 0])
     per_length = lambda z: -0.5 * RHO * 1.1 * 10 * abs(q * z) * q * z  # noqa: E731
-    assert_allclose(found[0], quad(per_length, -20, 0)[0], rtol=1e-10)
-    assert_allclose(found[4], quad(lambda z: z * per_length(z), -20, 0)[0], rtol=1e-10)
+    assert_allclose(actual[0], quad(per_length, -20, 0)[0], rtol=1e-10)
+    assert_allclose(actual[4], quad(lambda z: z * per_length(z), -20, 0)[0], rtol=1e-10)
 
 
 def test_drag_of_an_oblique_flow_on_a_column() -> None:
     """A circle sees the flow's vector: the force is against it, with the square of its whole speed."""
-    found = force(only(build(COLUMN), MorisonDrag), [0.6, -0.8, 0, 0, 0, 0])
-    assert_allclose(found[:2], -0.5 * RHO * 1.1 * 200 * np.array([0.6, -0.8]), rtol=1e-11)
+    actual = force(only(build(COLUMN), MorisonDrag), [0.6, -0.8, 0, 0, 0, 0])
+    assert_allclose(actual[:2], -0.5 * RHO * 1.1 * 200 * np.array([0.6, -0.8]), rtol=1e-11)
 
 
 def test_drag_of_a_pontoon_in_pitch() -> None:
     """Vertical drag on the plan width, integral of 1/2 rho Cd B |q x| q x and its moment, by quad; w = -q x."""
     q = -0.02
-    found = force(only(build(PONTOON), MorisonDrag), [0, 0, 0, 0, q, 0])
+    actual = force(only(build(PONTOON), MorisonDrag), [0, 0, 0, 0, q, 0])
     per_length = lambda x: 0.5 * RHO * 2.3 * 12.5 * abs(q * x) * q * x  # noqa: E731
-    assert_allclose(found[2], quad(per_length, 5, 45)[0], rtol=1e-10)
-    assert_allclose(found[4], quad(lambda x: -x * per_length(x), 5, 45)[0], rtol=1e-10)
+    assert_allclose(actual[2], quad(per_length, 5, 45)[0], rtol=1e-10)
+    assert_allclose(actual[4], quad(lambda x: -x * per_length(x), 5, 45)[0], rtol=1e-10)
 
 
 @pytest.mark.parametrize("speed", ["vector", "component"])
 def test_drag_of_a_rectangle_by_vector_or_component(speed: str) -> None:
     """Side area 7 x 40 with Cd_t, plan 12.5 x 40 with Cd_z; |.| of the vector (OpenFAST) or of the component."""
     v, w = 0.7, -0.4
-    found = force(only(build(PONTOON, drag_speed=speed), MorisonDrag), [0, v, w, 0, 0, 0])
+    actual = force(only(build(PONTOON, drag_speed=speed), MorisonDrag), [0, v, w, 0, 0, 0])
     of = (math.hypot(v, w),) * 2 if speed == "vector" else (abs(v), abs(w))
     expected = [0, -0.5 * RHO * 1.1 * 7 * 40 * of[0] * v, -0.5 * RHO * 2.3 * 12.5 * 40 * of[1] * w]
-    assert_allclose(found[:3], expected, rtol=1e-11, atol=1e-4)
+    assert_allclose(actual[:3], expected, rtol=1e-11, atol=1e-4)
 
 
 def test_no_strip_drag_along_a_member() -> None:
@@ -511,20 +511,20 @@ def test_drag_turns_with_the_body() -> None:
     model = only(build({**COLUMN, "rA": [0, 0, -60], "rB": [0, 0, -30]}), MorisonDrag).with_values({"column.Cd_z": 0.0})
     matrix = Rotation.from_euler("y", 20, degrees=True).as_matrix()
     body = matrix.T @ [1.0, 0, 0]
-    found = force(model, [*body, 0, 0, 0], [0, 0, 0, 0, math.radians(20), 0])
+    actual = force(model, [*body, 0, 0, 0], [0, 0, 0, 0, math.radians(20), 0])
     across = math.cos(math.radians(20))
-    assert_allclose(found[:3], [-0.5 * RHO * 1.1 * 300 * across**2, 0, 0], rtol=1e-11, atol=1e-3)
+    assert_allclose(actual[:3], [-0.5 * RHO * 1.1 * 300 * across**2, 0, 0], rtol=1e-11, atol=1e-3)
 
 
 def test_end_drag() -> None:
     """1/2 rho Cd pi/4 D^2 |w| w on the bottom that is in the water; the dry top adds nothing; its lever in pitch."""
     model = only(build({**COLUMN, "rA": [30, 0, -20], "rB": [30, 0, 15]}), MorisonDrag)
     area = math.pi * 25
-    found = force(model, [0, 0, -0.9, 0, 0, 0])
-    assert_allclose(found[[2, 4]], np.array([1, -30]) * 0.5 * RHO * 2.3 * area * 0.81, rtol=1e-11)
+    actual = force(model, [0, 0, -0.9, 0, 0, 0])
+    assert_allclose(actual[[2, 4]], np.array([1, -30]) * 0.5 * RHO * 2.3 * area * 0.81, rtol=1e-11)
     assert_allclose(force(model, [0, 0, 0, 0, 0.02, 0])[2], 0.5 * RHO * 2.3 * area * 0.36, rtol=1e-11)
     sunk = only(build({**COLUMN, "rA": [30, 0, -60], "rB": [30, 0, -30]}), MorisonDrag)
-    assert_allclose(force(sunk, [0, 0, -0.9, 0, 0, 0])[2], 2 * found[2], rtol=1e-11)
+    assert_allclose(force(sunk, [0, 0, -0.9, 0, 0, 0])[2], 2 * actual[2], rtol=1e-11)
 
 
 # added mass
@@ -536,33 +536,33 @@ def added_mass(model: jh.Model) -> np.ndarray:
 
 def test_added_mass_of_a_column() -> None:
     """a = rho Ca pi/4 D^2 per metre: a T, -a T^2/2 in surge-pitch, a T^3/3 about the waterline; both planes alike."""
-    found = added_mass(only(build(COLUMN), StripInertia))
+    actual = added_mass(only(build(COLUMN), StripInertia))
     a, depth = RHO * 0.9 * math.pi / 4 * 100, 20.0
     expected = np.zeros((6, 6))
     expected[0, 0] = expected[1, 1] = a * depth
     expected[0, 4] = expected[4, 0] = -a * depth**2 / 2
     expected[1, 3] = expected[3, 1] = a * depth**2 / 2
     expected[3, 3] = expected[4, 4] = a * depth**3 / 3
-    assert_allclose(found, expected, rtol=1e-11, atol=1e-3)
+    assert_allclose(actual, expected, rtol=1e-11, atol=1e-3)
 
 
 def test_added_mass_of_a_pontoon() -> None:
     """rho Ca B H per metre: heave with Ca_z, sway with Ca_t, levers x and z = -16.5 m; nothing along itself."""
-    found = added_mass(only(build(PONTOON), StripInertia))
+    actual = added_mass(only(build(PONTOON), StripInertia))
     vertical, side = RHO * 0.6 * 12.5 * 7 * 40, RHO * 0.9 * 12.5 * 7 * 40
     square = (45**3 - 5**3) / (3 * 40)
-    assert_allclose(found[2, [2, 4]], [vertical, -vertical * 25], rtol=1e-11)
-    assert_allclose(found[4, 4], vertical * square, rtol=1e-11)
-    assert_allclose(found[1, [1, 3, 5]], [side, side * 16.5, side * 25], rtol=1e-11)
-    assert_allclose(found[[3, 5], [3, 5]], [side * 16.5**2, side * square], rtol=1e-11)
-    assert_allclose(found[0], 0.0, atol=1e-4)
+    assert_allclose(actual[2, [2, 4]], [vertical, -vertical * 25], rtol=1e-11)
+    assert_allclose(actual[4, 4], vertical * square, rtol=1e-11)
+    assert_allclose(actual[1, [1, 3, 5]], [side, side * 16.5, side * 25], rtol=1e-11)
+    assert_allclose(actual[[3, 5], [3, 5]], [side * 16.5**2, side * square], rtol=1e-11)
+    assert_allclose(actual[0], 0.0, atol=1e-4)
 
 
 def test_added_mass_of_ends() -> None:
     """rho Ca 2/3 pi r^3 on the wet end, lever 30 m; a square end counts as the circle of its area."""
     ball = RHO * 0.6 * 2 / 3 * math.pi * 125
-    found = added_mass(only(build({**COLUMN, "rA": [30, 0, -20], "rB": [30, 0, 15]}), EndInertia))
-    assert_allclose([found[2, 2], found[2, 4], found[4, 4]], [ball, -30 * ball, 900 * ball], rtol=1e-11)
+    actual = added_mass(only(build({**COLUMN, "rA": [30, 0, -20], "rB": [30, 0, 15]}), EndInertia))
+    assert_allclose([actual[2, 2], actual[2, 4], actual[4, 4]], [ball, -30 * ball, 900 * ball], rtol=1e-11)
     box = {**COLUMN, "shape": "rect", "d": [8.0, 10.0]}
     radius = math.sqrt(80 / math.pi)
     assert_allclose(added_mass(only(build(box), EndInertia))[2, 2], ball * radius**3 / 125, rtol=1e-11)
@@ -571,21 +571,21 @@ def test_added_mass_of_ends() -> None:
 def test_added_mass_of_a_tapered_column() -> None:
     """Volume of the frustum, pi L/12 (D^2 + D d + d^2), and its first moment by quad."""
     cone = {**COLUMN, "d": [12.0, 6.0], "stations": [0, 1], "rA": [0, 0, -50], "rB": [0, 0, -20]}
-    found = added_mass(only(build(cone), StripInertia))
+    actual = added_mass(only(build(cone), StripInertia))
     volume = math.pi * 30 / 12 * (144 + 72 + 36)
     first = quad(lambda z: z * math.pi / 4 * (12 - 6 * (z + 50) / 30) ** 2, -50, -20)[0]
-    assert_allclose(found[0, [0, 4]], RHO * 0.9 * np.array([volume, first]), rtol=1e-11)
+    assert_allclose(actual[0, [0, 4]], RHO * 0.9 * np.array([volume, first]), rtol=1e-11)
 
 
 def test_strips_follow_the_surface() -> None:
     """A column lifted by 3 m has 17 m in the water and is loaded there: instantaneous wetting; not so with mean."""
     for wetting, depth in (("instantaneous", 17.0), ("mean", 20.0)):
         model = only(build(COLUMN, wetting=wetting), MorisonDrag)
-        found = force(model, [1.0, 0, 0, 0, 0, 0], [0, 0, 3.0, 0, 0, 0])[0]
-        assert_allclose(found, -0.5 * RHO * 1.1 * 10 * depth, rtol=1e-11)
+        actual = force(model, [1.0, 0, 0, 0, 0, 0], [0, 0, 3.0, 0, 0, 0])[0]
+        assert_allclose(actual, -0.5 * RHO * 1.1 * 10 * depth, rtol=1e-11)
     leaning = only(build(COLUMN), MorisonDrag)
-    found = force(leaning, [0, 1.0, 0, 0, 0, 0], [0, 0, 0, 0, math.radians(15), 0])[1]
-    assert_allclose(found, -0.5 * RHO * 1.1 * 10 * 20, rtol=1e-11)  # along its axis, from -20 m to the surface
+    actual = force(leaning, [0, 1.0, 0, 0, 0, 0], [0, 0, 0, 0, math.radians(15), 0])[1]
+    assert_allclose(actual, -0.5 * RHO * 1.1 * 10 * 20, rtol=1e-11)  # along its axis, from -20 m to the surface
 
 
 def test_centripetal_part_of_added_mass() -> None:
@@ -593,8 +593,8 @@ def test_centripetal_part_of_added_mass() -> None:
     model = only(build(PONTOON), StripInertia)
     assert_allclose(force(model, [0, 0, 0, 0, 0, 0.1]), 0.0, atol=1e-4)
     turned = only(build({**PONTOON, "rA": [20, -20, -16.5], "rB": [20, 20, -16.5]}), StripInertia)
-    found = force(turned, [0, 0, 0, 0, 0, 0.1])  # its x acceleration is -r^2 x
-    assert_allclose(found[0], RHO * 0.9 * 12.5 * 7 * 40 * 0.01 * 20, rtol=1e-10)
+    actual = force(turned, [0, 0, 0, 0, 0, 0.1])  # its x acceleration is -r^2 x
+    assert_allclose(actual[0], RHO * 0.9 * 12.5 * 7 * 40 * 0.01 * 20, rtol=1e-10)
     without = only(build({**PONTOON, "rA": [20, -20, -16.5], "rB": [20, 20, -16.5]}, centripetal=False), StripInertia)
     assert_allclose(force(without, [0, 0, 0, 0, 0, 0.1]), 0.0, atol=1e-4)
     assert_allclose(added_mass(without), added_mass(turned), rtol=1e-14)
@@ -691,48 +691,48 @@ def test_buoyancy_of_an_inclined_column(heave: float, roll: float, pitch: float,
     position = np.array([4.0, -3.0, heave, *np.radians([roll, pitch, yaw])])
     model = only(build({**COLUMN, "rA": [12, 5, -20], "rB": [12, 5, 15]}), Buoyancy)
     expected = brute_force(position, 12.0, 5.0, 10.0, -20.0)
-    found = np.asarray(at_rest(model, jnp.asarray(position)))
-    assert_allclose(found, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+    actual = np.asarray(at_rest(model, jnp.asarray(position)))
+    assert_allclose(actual, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
 def test_buoyancy_of_a_submerged_box() -> None:
     """rho g V at its centroid whatever its attitude."""
     position = np.array([0, 0, -4.0, 0.1, 0.2, 0.3])
-    found = np.asarray(at_rest(only(build(PONTOON), Buoyancy), jnp.asarray(position)))
+    actual = np.asarray(at_rest(only(build(PONTOON), Buoyancy), jnp.asarray(position)))
     up = np.array([0, 0, RHO * G * 12.5 * 7 * 40])
     arm = Rotation.from_euler("ZYX", [0.3, 0.2, 0.1]).apply([25.0, 0, -16.5])
-    assert_allclose(found, [*up, *np.cross(arm, up)], rtol=1e-12, atol=1e-6 * up[2])
+    assert_allclose(actual, [*up, *np.cross(arm, up)], rtol=1e-12, atol=1e-6 * up[2])
 
 
 def test_buoyancy_of_a_frustum() -> None:
     """pi L/12 (D^2 + D d + d^2)."""
     cone = {**COLUMN, "d": [12.0, 6.0], "stations": [0, 1], "rA": [0, 0, -50], "rB": [0, 0, -20]}
-    found = at_rest(only(build(cone), Buoyancy))
-    assert float(found[2]) == pytest.approx(RHO * G * math.pi * 30 / 12 * (144 + 72 + 36), rel=1e-12)
+    actual = at_rest(only(build(cone), Buoyancy))
+    assert float(actual[2]) == pytest.approx(RHO * G * math.pi * 30 / 12 * (144 + 72 + 36), rel=1e-12)
 
 
 def test_a_body_turned_upside_down_in_the_file_is_the_same() -> None:
     """rA above rB is the same column."""
     position = jnp.array([0, 0, 1.0, 0.1, 0.2, 0.0])
-    one, other = (
+    upwards, downwards = (
         only(build({**COLUMN, "rA": a, "rB": b}), Buoyancy, MorisonDrag, StripInertia, EndInertia)
         for a, b in (([9, 0, -20], [9, 0, 15]), ([9, 0, 15], [9, 0, -20]))
     )
     velocity = jnp.array([1.0, 0.5, -0.4, 0.02, -0.03, 0.01])
-    for a, b in zip(wrench(one, position, velocity, SEA), wrench(other, position, velocity, SEA), strict=True):
+    for a, b in zip(wrench(upwards, position, velocity, SEA), wrench(downwards, position, velocity, SEA), strict=True):
         assert_allclose(a, b, rtol=1e-11, atol=1e-11 * float(jnp.abs(a).max()))
 
 
 def test_hydrostatic_stiffness_of_a_column() -> None:
     """C33 = rho g A, C44 = C55 = rho g (I + A x^2) + rho g V z_B - m g z_G, C35 = -rho g A x."""
     x, area, depth = 12.0, math.pi * 25, 20.0
-    found = np.asarray(stiffness(only(build({**COLUMN, "rA": [x, 0, -20], "rB": [x, 0, 15]}), Buoyancy, Weight)))
+    actual = np.asarray(stiffness(only(build({**COLUMN, "rA": [x, 0, -20], "rB": [x, 0, 15]}), Buoyancy, Weight)))
     second, volume = math.pi / 64 * 1e4, area * depth
     upright = RHO * G * (second + volume * -10) - 8e6 * G * -8
-    assert_allclose(found[2, 2], RHO * G * area, rtol=1e-11)
-    assert_allclose(found[2, 4], -RHO * G * area * x, rtol=1e-11)
-    assert_allclose(found[4, 4], upright + RHO * G * area * x**2, rtol=1e-11)
-    assert_allclose(found[3, 3], upright, rtol=1e-11)
+    assert_allclose(actual[2, 2], RHO * G * area, rtol=1e-11)
+    assert_allclose(actual[2, 4], -RHO * G * area * x, rtol=1e-11)
+    assert_allclose(actual[4, 4], upright + RHO * G * area * x**2, rtol=1e-11)
+    assert_allclose(actual[3, 3], upright, rtol=1e-11)
 
 
 HULL = [
@@ -759,7 +759,7 @@ def test_declared_hydrostatics_come_out(declared: dict, members: bool) -> None:
     hull = HULL if members else []
     plain = only(build(*hull), Buoyancy, Weight)
     model = only(build(*hull, hydrostatics=declared), Buoyancy, Weight)
-    found, own = np.asarray(stiffness(model)), np.asarray(stiffness(plain))
+    actual, own = np.asarray(stiffness(model)), np.asarray(stiffness(plain))
     lift = float(at_rest(model)[2]) + 8e6 * G
     own_lift = float(at_rest(plain)[2]) + 8e6 * G
     volume = declared.get("displaced_volume", own_lift / (RHO * G))
@@ -770,8 +770,8 @@ def test_declared_hydrostatics_come_out(declared: dict, members: bool) -> None:
         expected = own[i, i] + (extra if i > 2 else 0.0)
         if f"{key}_buoyancy" in declared:
             expected = declared[f"{key}_buoyancy"] + weight
-        assert found[i, i] == pytest.approx(declared.get(key, expected), rel=1e-10), key
-    off = found - np.diag(np.diag(found))
+        assert actual[i, i] == pytest.approx(declared.get(key, expected), rel=1e-10), key
+    off = actual - np.diag(np.diag(actual))
     assert np.abs(off).max() < 1e-8 * max(np.abs(own).max(), 1e9)
 
 
@@ -792,14 +792,14 @@ def moored() -> jh.Model:
 
 def test_stiffness_of_pretensioned_springs() -> None:
     """K11 = sum k c^2 + T/l s^2, K33 = sum T/l; K55 from k u u' + T/l (1 - u u') at fairleads and turned pull."""
-    found = np.asarray(stiffness(moored()))
+    actual = np.asarray(stiffness(moored()))
     length = math.hypot(150.0 - 29.0, 259.80762 - 50.22947)
     azimuth = np.arctan2([259.80762 - 50.22947, 0.0, -259.80762 + 50.22947], [121.0, -242.0, 121.0])
     tension = 1.5e6
     surge = sum(45e3 * np.cos(azimuth) ** 2 + tension / 242.0 * np.sin(azimuth) ** 2)
     assert length == pytest.approx(242.0, rel=1e-6)
-    assert found[0, 0] == pytest.approx(surge, rel=1e-6)
-    assert found[2, 2] == pytest.approx(3 * tension / 242.0, rel=1e-6)
+    assert actual[0, 0] == pytest.approx(surge, rel=1e-6)
+    assert actual[2, 2] == pytest.approx(3 * tension / 242.0, rel=1e-6)
     pitch, e = 0.0, np.array([0.0, 1.0, 0.0])
     for line in SPRINGS["lines"]:
         fairlead = np.array(line["fairlead"])
@@ -808,7 +808,7 @@ def test_stiffness_of_pretensioned_springs() -> None:
         matrix = 45e3 * np.outer(unit, unit) + tension / span * (np.eye(3) - np.outer(unit, unit))
         moved = np.cross(e, fairlead)
         pitch -= e @ (np.cross(moved, tension * unit) - np.cross(fairlead, matrix @ moved))
-    assert found[4, 4] == pytest.approx(pitch, rel=1e-10)
+    assert actual[4, 4] == pytest.approx(pitch, rel=1e-10)
 
 
 def test_springs_at_large_offsets_and_slack() -> None:
@@ -826,8 +826,8 @@ def test_springs_at_large_offsets_and_slack() -> None:
             pull = tension * way / length
             expected += [*pull, *np.cross(arm, pull)]
         assert slack == (position[0] == -50.0)
-        found = np.asarray(at_rest(model, jnp.asarray(position)))
-        assert_allclose(found, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
+        actual = np.asarray(at_rest(model, jnp.asarray(position)))
+        assert_allclose(actual, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
         assert bool(jnp.isfinite(stiffness(model, jnp.asarray(position))).all())
 
 

@@ -57,9 +57,9 @@ OMEGA = np.arange(0.05, 12.01, 0.05)
 
 def coefficients(omega: np.ndarray = OMEGA) -> RadiationCoefficients:
     """What a program would have computed for that kernel."""
-    found, infinite = transfer(omega), np.diag([1e7, 1e7, 2e7, 1e10, 1e10, 1e10])
-    mass = infinite + (found.imag / omega)[:, None, None] * SHAPE
-    return RadiationCoefficients(omega, mass, found.real[:, None, None] * SHAPE, infinite)
+    actual, infinite = transfer(omega), np.diag([1e7, 1e7, 2e7, 1e10, 1e10, 1e10])
+    mass = infinite + (actual.imag / omega)[:, None, None] * SHAPE
+    return RadiationCoefficients(omega, mass, actual.real[:, None, None] * SHAPE, infinite)
 
 
 def test_the_closed_form_is_a_retardation_function() -> None:
@@ -77,9 +77,9 @@ def test_kernel_and_step_response() -> None:
     """2/pi int B cos and its integral against the kernel and its integral t exp(-p t) (1 + p t); cut off at 12 rad/s."""
     damping, time = Damping.of(coefficients()), np.linspace(0, 60, 241)
     step = time * np.exp(-P * time) * (1 + P * time)
-    for found, expected in ((damping.kernel(time), kernel(time)), (damping.step_response(time), step)):
+    for actual, expected in ((damping.kernel(time), kernel(time)), (damping.step_response(time), step)):
         for i, j in ((0, 0), (2, 2), (4, 4), (0, 4)):
-            assert_allclose(found[:, i, j] / SHAPE[i, j], expected, atol=1e-3)
+            assert_allclose(actual[:, i, j] / SHAPE[i, j], expected, atol=1e-3)
 
 
 @pytest.mark.parametrize("last", [4.0, 12.0])
@@ -90,13 +90,13 @@ def test_a_state_space_has_the_kernel(last: float) -> None:
     assert space.misfit < 0.001 and space.order == 9  # three of heave, three by two of surge and pitch
     assert np.linalg.eigvals(space.rates).real.max() < 0 and space.least_damping > -0.01
     omega = np.array([0.01, 0.1, 0.3, 0.5, 1.0, 2.0])  # rad/s
-    found, expected = space.transfer(omega), transfer(omega)
+    actual, expected = space.transfer(omega), transfer(omega)
     for i, j in ((0, 0), (2, 2), (4, 4), (0, 4), (4, 0)):
         peak = abs(SHAPE[i, j]) * np.abs(transfer(OMEGA)).max()
-        assert_allclose(found[:, i, j], SHAPE[i, j] * expected, atol=0.002 * peak)
+        assert_allclose(actual[:, i, j], SHAPE[i, j] * expected, atol=0.002 * peak)
     assert_allclose(space.transfer(np.zeros(1))[0], 0.0, atol=1e-9 * SHAPE.max())  # no force on what rests
     silent = [1, 3, 5]
-    assert not np.abs(found[:, silent]).any() and not np.abs(found[:, :, silent]).any()
+    assert not np.abs(actual[:, silent]).any() and not np.abs(actual[:, :, silent]).any()
 
 
 def test_tighter_tolerances_take_more_states_and_miss_less() -> None:
@@ -124,14 +124,14 @@ def test_volturnus_by_ogilvies_relation() -> None:
     slow = given.omega < 1.2
     for order, close in ((40, 0.06), (60, 0.03)):
         space = realise(given, order=order)
-        found = space.transfer(given.omega)
+        actual = space.transfer(given.omega)
         assert space.order <= order and space.misfit < 0.07 and space.least_damping > -0.01
         assert np.linalg.eigvals(space.rates).real.max() < -0.01
         for i in (0, 2, 4, 5):
             added = (given.added_mass - given.infinite)[:, i, i]
-            assert np.abs(found[slow, i, i].imag / given.omega[slow] - added[slow]).max() < close * np.abs(added).max()
+            assert np.abs(actual[slow, i, i].imag / given.omega[slow] - added[slow]).max() < close * np.abs(added).max()
             damping = given.damping[:, i, i]
-            assert np.abs(found[slow, i, i].real - damping[slow]).max() < 0.08 * damping.max()
+            assert np.abs(actual[slow, i, i].real - damping[slow]).max() < 0.08 * damping.max()
 
 
 # the load
@@ -189,9 +189,9 @@ def test_retardation_of_the_memory_of_second_order() -> None:
     load = RadiationMemory({"heave": b}, {"heave": w0}, {"heave": zeta})
     low = (w0**2 - w**2) ** 2 + (2 * zeta * w0 * w) ** 2
     expected = b * (2 * zeta * w0 * w) ** 2 / low + 1j * w * 2 * zeta * w0 * b * (w0**2 - w**2) / low
-    found = load.retardation(w)
-    assert_allclose(found[2, 2], expected, rtol=1e-12)
-    assert np.abs(found).sum() == pytest.approx(abs(expected))
+    actual = load.retardation(w)
+    assert_allclose(actual[2, 2], expected, rtol=1e-12)
+    assert np.abs(actual).sum() == pytest.approx(abs(expected))
 
 
 @pytest.mark.slow
@@ -204,11 +204,11 @@ def test_steps_follow_the_fastest_memory() -> None:
     assert memory_step(model_of(model, model.loads[0]), "ab4") == math.inf
     waves = jh.spectrum_components(lambda w: jh.jonswap(w, 3.0, 9.0), 120.0, model.environment, low=0.05, cutoff=0.2, seed=1)
     sea, times, start = jh.IrregularSea(waves, model.environment, order=1), np.linspace(0.0, 120.0, 241), {"heave": 1.0}
-    found, finer, coarse = (
+    actual, finer, coarse = (
         np.asarray(jh.simulate(model, times, sea, position=start, step=step)["heave"])
         for step in (None, 0.05, 4 * memory_step(model, "ab4"))
     )
-    assert np.abs(found - finer).max() < 2e-3
+    assert np.abs(actual - finer).max() < 2e-3
     assert not np.abs(coarse).max() < 10
 
 
@@ -225,9 +225,9 @@ def test_gradients_by_the_share() -> None:
     def squared(share, adjoint="forward"):
         return (motion(share, adjoint) ** 2).sum()
 
-    one = jnp.asarray(1.0)
-    forward = jax.jacfwd(squared)(one)
-    reverse = jax.grad(lambda share: squared(share, "reverse"))(one)
+    whole = jnp.asarray(1.0)
+    forward = jax.jacfwd(squared)(whole)
+    reverse = jax.grad(lambda share: squared(share, "reverse"))(whole)
     difference = (squared(1.01) - squared(0.99)) / 0.02
     assert_allclose([reverse, difference], [forward] * 2, rtol=1e-3)
     assert_allclose(reverse, forward, rtol=1e-9)
@@ -274,8 +274,8 @@ def test_wamit_files_are_made_dimensional(tmp_path: Path) -> None:
     given = coefficients(np.array([0.2, 0.5, 1.0, 2.0, 3.0]))
     given = given._replace(zero=1.2 * given.infinite)
     (file := tmp_path / "a.1").write_text(wamit_text(given, 12.5, 1010.0))
-    for one, other in zip(read_wamit(file, 1010.0, 12.5), given):
-        assert_allclose(one, other, rtol=1e-7, atol=1e-3)
+    for read, other in zip(read_wamit(file, 1010.0, 12.5), given):
+        assert_allclose(read, other, rtol=1e-7, atol=1e-3)
     kept = [line for line in wamit_text(given, 1, 1).splitlines()[1:] if line[0] != "0"]
     (file := tmp_path / "b.1").write_text("\n".join(kept))
     assert read_wamit(file, 1.0).infinite is None
@@ -325,12 +325,12 @@ def test_capytaine_datasets(tmp_path: Path) -> None:
     file, names = tmp_path / "a.nc", ["Heave", "Surge", "Pitch"]
     made = dataset(given, names, [2, 0, 4])
     made.expand_dims("water_depth").to_netcdf(file)
-    found = read_capytaine(file)
+    actual = read_capytaine(file)
     pick = np.ix_([0, 2, 4], [0, 2, 4])
-    for one, other in zip(found[1:], given[1:]):
-        assert_allclose(one[(..., *pick)], other[(..., *pick)], rtol=1e-12)
-    assert_allclose(found.omega, given.omega)
-    assert not found.added_mass[:, 1].any() and not found.added_mass[:, :, 3].any()
+    for read, other in zip(actual[1:], given[1:]):
+        assert_allclose(read[(..., *pick)], other[(..., *pick)], rtol=1e-12)
+    assert_allclose(actual.omega, given.omega)
+    assert not actual.added_mass[:, 1].any() and not actual.added_mass[:, :, 3].any()
     made.drop_sel(omega=[0.0, np.inf]).to_netcdf(file)
     assert read_capytaine(file).infinite is None and read_capytaine(file).zero is None
 
@@ -444,16 +444,20 @@ def test_wrong_declarations_are_told(tmp_path: Path, keys: dict, words: str) -> 
 def test_a_declared_candidate_is_in_the_catalogue(tmp_path: Path) -> None:
     """Beside the lowest-order memory; not where the platform has it already. What was found is used without the catalogue."""
     scales = {"heave": NoticeableScales(1.0, 0.3, 1e5, 1e7)}
-    for use, there in (("candidate", True), ("load", False)):
+    for use, listed in (("candidate", True), ("load", False)):
         model = jh.load_model(folder(tmp_path, use=use))
-        found, free, sizes = catalogue(model, scales, False, 1.0)
-        names = [one.effect for one in found]
-        assert "radiation_memory" in names and ("computed_radiation" in names) == there == bool(requested_table_labels(model))
-        if there:
-            one = found[names.index("computed_radiation")]
-            assert one.positive == one.amplitudes == ("computed_radiation.share",) and one.telling and one.source
-            assert free[one.amplitudes[0]].start == 0.0 and sizes[one.amplitudes[0]] > 0
-            assert with_candidates(model, [one]) is model
+        candidates, free, sizes = catalogue(model, scales, False, 1.0)
+        names = [candidate.effect for candidate in candidates]
+        assert "radiation_memory" in names and ("computed_radiation" in names) == listed == bool(requested_table_labels(model))
+        if listed:
+            candidate = candidates[names.index("computed_radiation")]
+            assert (
+                candidate.positive == candidate.amplitudes == ("computed_radiation.share",)
+                and candidate.telling
+                and candidate.source
+            )
+            assert free[candidate.amplitudes[0]].start == 0.0 and sizes[candidate.amplitudes[0]] > 0
+            assert with_candidates(model, [candidate]) is model
 
 
 def test_sweeps_find_the_coefficients_from_their_own_folder(tmp_path: Path) -> None:

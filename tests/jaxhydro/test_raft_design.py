@@ -74,8 +74,8 @@ def quadrature(first: np.ndarray, last: np.ndarray, length: float, circular: boo
 def test_solid_frustum_against_quadrature(circular: bool, last: tuple[float, float]) -> None:
     first = np.array([5.0, 5.0 if circular else 4.0])
     end = np.array([last[0], last[0] if circular else last[1]])
-    found = solid_frustum(first, end, 7.0, circular)
-    values = [found.mass, found.first, found.second, *found.across]
+    moments = solid_frustum(first, end, 7.0, circular)
+    values = [moments.mass, moments.first, moments.second, *moments.across]
     np.testing.assert_allclose(values, quadrature(first, end, 7.0, circular), rtol=1e-12)
 
 
@@ -108,22 +108,22 @@ INCLINED = {"rA": [-12.5, 4.3301, -15.0], "rB": [9.375, -3.2476, 11.25]}
 )
 def test_mass_of_members_against_raft(keys: dict[str, Any], mass: tuple[float, float], centre: tuple[float, ...]) -> None:
     whole, empty = member(**keys), member(**(keys | {"l_fill": 0.0}))
-    found = moments_of(whole)
+    moments = moments_of(whole)
     np.testing.assert_allclose(
-        [moments_of(empty).mass, found.mass], [mass[0], sum(mass)], rtol=2e-7
+        [moments_of(empty).mass, moments.mass], [mass[0], sum(mass)], rtol=2e-7
     )  # the ends' coordinates have six digits
-    at = np.array(whole.rA) + found.centre * member_axes(whole)[:, 2]
+    at = np.array(whole.rA) + moments.centre * member_axes(whole)[:, 2]
     np.testing.assert_allclose(at, centre, atol=2e-5)
 
 
 def test_inertia_of_an_upright_box_against_raft() -> None:
     """RAFT at e6cb69e, tests/test_member.py, desired_inertiaMatrix, about the reference point."""
     box = member(shape="rect", d=[9.85, 6], l_fill=2.71)
-    found, axes = moments_of(box), member_axes(box)
-    own = axes @ np.diag(found.inertia()) @ axes.T
-    z = box.rA[2] + found.centre
+    moments, axes = moments_of(box), member_axes(box)
+    own = axes @ np.diag(moments.inertia()) @ axes.T
+    z = box.rA[2] + moments.centre
     np.testing.assert_allclose(
-        np.diag(own) + found.mass * z**2 * np.array([1, 1, 0]), [3.23452553e8, 3.30580956e8, 1.73816357e7], rtol=1e-7
+        np.diag(own) + moments.mass * z**2 * np.array([1, 1, 0]), [3.23452553e8, 3.30580956e8, 1.73816357e7], rtol=1e-7
     )
 
 
@@ -176,16 +176,16 @@ def test_copies_about_the_axis_leave_a_symmetric_body(tmp_path: Path) -> None:
 
 def test_rotor_and_nacelle_lie_on_the_shaft(tmp_path: Path) -> None:
     """A shaft that rises by 6 deg towards the wind: q = (cos 6, 0, -sin 6); the hub, 4 m before the tower, at 60 m."""
-    found = next(p for p in converted(tmp_path).platform["rigid_body"]["parts"] if p["name"] == "rotor and nacelle")
+    part = next(p for p in converted(tmp_path).platform["rigid_body"]["parts"] if p["name"] == "rotor and nacelle")
     c, s = math.cos(math.radians(6)), math.sin(math.radians(6))
-    assert found["centre_of_mass"] == pytest.approx([-c, 0.0, 60.0 - 4 * s + s])
-    assert found["inertia"]["Ixx"] == pytest.approx(4e6 * c**2 + 3e6 * s**2)
-    assert found["inertia"]["Ixz"] == pytest.approx(-1e6 * c * s)
+    assert part["centre_of_mass"] == pytest.approx([-c, 0.0, 60.0 - 4 * s + s])
+    assert part["inertia"]["Ixx"] == pytest.approx(4e6 * c**2 + 3e6 * s**2)
+    assert part["inertia"]["Ixz"] == pytest.approx(-1e6 * c * s)
 
 
 def test_point_inertia_keeps_its_matrix(tmp_path: Path) -> None:
-    found = next(p for p in converted(tmp_path).platform["rigid_body"]["parts"] if p["name"] == "point inertia 1")
-    assert found["inertia"] == {"Ixx": 1e5, "Iyy": 2e5, "Izz": 3e5, "Ixy": 10.0, "Ixz": 20.0, "Iyz": 30.0}
+    part = next(p for p in converted(tmp_path).platform["rigid_body"]["parts"] if p["name"] == "point inertia 1")
+    assert part["inertia"] == {"Ixx": 1e5, "Iyy": 2e5, "Izz": 3e5, "Ixy": 10.0, "Ixz": 20.0, "Iyz": 30.0}
 
 
 # ------------------------------------------------------------------------------------------- coefficients
@@ -193,28 +193,28 @@ def test_point_inertia_keeps_its_matrix(tmp_path: Path) -> None:
 
 def test_coefficients(tmp_path: Path) -> None:
     """A pontoon's first direction is vertical. A column's CaEnd is the mean over its wet bottom and ring, by volume."""
-    found = converted(tmp_path).platform
-    assert found["coefficients"]["pontoon"] == {"Ca_t": 0.6, "Ca_z": 1.4, "Cd_t": 1.5, "Cd_z": 2.2}
+    platform = converted(tmp_path).platform
+    assert platform["coefficients"]["pontoon"] == {"Ca_t": 0.6, "Ca_z": 1.4, "Cd_t": 1.5, "Cd_z": 2.2}
     bottom, ring = 12**3, 12**3 - 6**3
-    assert found["coefficients"]["column"]["Ca_z"] == pytest.approx((0.5 * bottom + 0.7 * ring) / (bottom + ring))
-    assert found["coefficients"]["column"]["Cd_z"] == 2.0
-    assert found["coefficients"]["hub"] == {"Ca_t": 0.8, "Ca_z": 0.5, "Cd_t": 0.7, "Cd_z": 2.0}
-    assert found["drag_speed"] == "component"
-    assert [m["maccamy_fuchs"] for m in found["members"] if m["shape"] == "circ"] == [False, False]
+    assert platform["coefficients"]["column"]["Ca_z"] == pytest.approx((0.5 * bottom + 0.7 * ring) / (bottom + ring))
+    assert platform["coefficients"]["column"]["Cd_z"] == 2.0
+    assert platform["coefficients"]["hub"] == {"Ca_t": 0.8, "Ca_z": 0.5, "Cd_t": 0.7, "Cd_z": 2.0}
+    assert platform["drag_speed"] == "component"
+    assert [m["maccamy_fuchs"] for m in platform["members"] if m["shape"] == "circ"] == [False, False]
 
 
 def test_members_of_equal_coefficients_share_a_group(tmp_path: Path) -> None:
-    found = converted(tmp_path, lambda d: d["platform"]["members"][2].update(CaEnd=[0.5, 0.5], name="a")).platform
-    assert "group" not in found["members"][2]
-    found = converted(tmp_path, lambda d: d["platform"]["members"][0].update(CaEnd=0.5)).platform
-    assert found["members"][2]["group"] == "column" and set(found["coefficients"]) == {"column", "pontoon"}
+    platform = converted(tmp_path, lambda d: d["platform"]["members"][2].update(CaEnd=[0.5, 0.5], name="a")).platform
+    assert "group" not in platform["members"][2]
+    platform = converted(tmp_path, lambda d: d["platform"]["members"][0].update(CaEnd=0.5)).platform
+    assert platform["members"][2]["group"] == "column" and set(platform["coefficients"]) == {"column", "pontoon"}
 
 
 def test_a_box_end_keeps_its_added_mass(tmp_path: Path) -> None:
     """RAFT: rho pi/12 ((a + b)/2)^3 CaEnd; here rho 2/3 pi r^3 Ca_z with pi r^2 = a b."""
     box = {"shape": "rect", "d": [6.0, 4.0], "CaEnd": 0.5}
-    found = converted(tmp_path, lambda d: d["platform"]["members"][2].update(box)).platform["coefficients"]["hub"]
-    ours = found["Ca_z"] * 2 / 3 * math.pi * (24 / math.pi) ** 1.5
+    coefficients = converted(tmp_path, lambda d: d["platform"]["members"][2].update(box)).platform["coefficients"]["hub"]
+    ours = coefficients["Ca_z"] * 2 / 3 * math.pi * (24 / math.pi) ** 1.5
     assert ours == pytest.approx(0.5 * math.pi / 12 * 5.0**3)
 
 
@@ -224,18 +224,18 @@ def test_treatment_of_what_the_platform_file_does_not_have(tmp_path: Path) -> No
         data["platform"]["members"][0] |= {"Cd": [0.7, 0.8, 0.9, 1.0], "potMod": True, "Cd_q": 0.1, "colour": "red"}
         data["platform"]["members"][1] |= {"CaEnd": 0.4, "type": "beam", "E": 2e11, "G": 8e10}
 
-    found = converted(tmp_path, change)
-    said = {item.source.removeprefix("design.yaml: "): (item.treatment, item.meaning) for item in found.items}
+    conversion = converted(tmp_path, change)
+    said = {item.source.removeprefix("design.yaml: "): (item.treatment, item.meaning) for item in conversion.items}
     assert said["platform.members[0].potMod"][0] is Treatment.APPROXIMATED
     assert said["platform.members[1].type"][0] is Treatment.APPROXIMATED
     for key in ("platform.members[0].Cd_q", "platform.members[0].colour", "platform.members[1].CaEnd", "platform.hydroPath"):
         assert said[key][0] is Treatment.LEFT_OUT, key
     assert said["platform.additional_effects[1]"][0] is Treatment.LEFT_OUT
     assert said["turbine: Fthrust"][0] is Treatment.LEFT_OUT and said["settings"][0] is Treatment.LEFT_OUT
-    assert found.platform["coefficients"]["column"]["Cd_t"] == 0.75  # RAFT's first two numbers are the two directions
-    assert any("first two of 4 numbers" in item.meaning for item in found.items)
-    assert "maccamy_fuchs" not in found.platform["members"][0]
-    assert found.platform["stiffness"] == {"C66": 1e6}
+    assert conversion.platform["coefficients"]["column"]["Cd_t"] == 0.75  # RAFT's first two numbers are the two directions
+    assert any("first two of 4 numbers" in item.meaning for item in conversion.items)
+    assert "maccamy_fuchs" not in conversion.platform["members"][0]
+    assert conversion.platform["stiffness"] == {"C66": 1e6}
 
 
 # ------------------------------------------------------------------------------------------------ moorings
@@ -248,14 +248,15 @@ def moorings(change: Callable[[dict[str, Any]], object] = lambda section: None) 
 
 
 def test_mooring_section_is_read() -> None:
-    found = moorings(lambda s: s["points"][3].update(type="Coupled1") or s["points"][0].update(type="Anchor"))
-    assert found.depth == 80.0 and len(found.points) == 6 and len(found.lines) == 3
+    mooring = moorings(lambda s: s["points"][3].update(type="Coupled1") or s["points"][0].update(type="Anchor"))
+    assert mooring.depth == 80.0 and len(mooring.points) == 6 and len(mooring.lines) == 3
     assert (
-        found.points["fairlead1"].attachment is Attachment.PLATFORM and found.points["anchor1"].attachment is Attachment.GROUND
+        mooring.points["fairlead1"].attachment is Attachment.PLATFORM
+        and mooring.points["anchor1"].attachment is Attachment.GROUND
     )
-    chain = found.line_types["chain"]
+    chain = mooring.line_types["chain"]
     assert chain.weight_in_water(1025.0, 9.81) == pytest.approx((120.0 - 1025.0 * math.pi / 4 * 0.01) * 9.81)
-    assert found.lines["line2"].ends == ("anchor2", "fairlead2")
+    assert mooring.lines["line2"].ends == ("anchor2", "fairlead2")
 
 
 def test_lines_weigh_the_same_in_water_of_another_density() -> None:
@@ -304,15 +305,15 @@ def test_linear_mooring_of_oc3_against_moorpy() -> None:
     ],
 )
 def test_moorings_that_are_left_out_say_why(tmp_path: Path, change: Callable[[dict[str, Any]], object], reason: str) -> None:
-    found = converted(tmp_path, lambda d: change(d["mooring"]))
-    item = next(item for item in found.items if item.source.endswith(": mooring"))
+    conversion = converted(tmp_path, lambda d: change(d["mooring"]))
+    item = next(item for item in conversion.items if item.source.endswith(": mooring"))
     assert item.treatment is Treatment.LEFT_OUT and reason in item.meaning
-    assert "mooring" not in found.platform
+    assert "mooring" not in conversion.platform
 
 
 def test_mooring_of_another_file_is_left_out(tmp_path: Path) -> None:
-    found = converted(tmp_path, lambda d: d.update(mooring={"file": "lines.dat", "water_depth": 80}))
-    assert any(item.source.endswith("mooring.file") and item.treatment is Treatment.LEFT_OUT for item in found.items)
+    conversion = converted(tmp_path, lambda d: d.update(mooring={"file": "lines.dat", "water_depth": 80}))
+    assert any(item.source.endswith("mooring.file") and item.treatment is Treatment.LEFT_OUT for item in conversion.items)
 
 
 # -------------------------------------------------------------------------------------------- whole design
@@ -320,19 +321,19 @@ def test_mooring_of_another_file_is_left_out(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_platform_file_loads_builds_and_floats_as_the_design_says(tmp_path: Path) -> None:
-    found = converted(tmp_path)
+    conversion = converted(tmp_path)
     path = tmp_path / "platform.yaml"
-    YAML().dump(found.platform, path)
+    YAML().dump(conversion.platform, path)
     platform = jh.load_platform(path)
     model = jh.build(platform)
     volume = 3 * math.pi / 4 * (12**2 * 4 + 6**2 * 8) + 3 * 16 * 18.0 + math.pi / 4 * 6**2 * 12
     buoyancy = next(load for load in model.loads if isinstance(load, jh.loads.Buoyancy))
     assert buoyancy.upright(1025.0 * 9.81)["displaced_volume"] == pytest.approx(volume, rel=1e-6)
     assert float(model.environment.gravity) == 9.81
-    mass = sum(part["mass"] for part in found.platform["rigid_body"]["parts"])
+    mass = sum(part["mass"] for part in conversion.platform["rigid_body"]["parts"])
     assert float(model.body.mass) == pytest.approx(mass)
     assert model.values["mooring.line2.unstretched_length"] == 385.0
-    assert all(item.source.startswith("design.yaml: ") for item in found.items)
+    assert all(item.source.startswith("design.yaml: ") for item in conversion.items)
 
 
 # ---------------------------------------------------------------------------------------------- broken files

@@ -54,7 +54,7 @@ def exported(name: str) -> ExportedModel:
 
 
 def said(name: str, source: str, treatment: Treatment) -> str:
-    return " ".join(one.meaning for one in exported(name).items if source in one.source and one.treatment is treatment)
+    return " ".join(item.meaning for item in exported(name).items if source in item.source and item.treatment is treatment)
 
 
 def read_back(name: str, folder: Path) -> Platform:
@@ -84,11 +84,11 @@ def test_mass_members_and_coefficients_come_back(name: str, tmp_path: Path) -> N
             assert read[k] == pytest.approx(mine[k], rel=SAME, abs=1e-8)
         for ours, theirs in zip(mine[3].directions, read[3].directions, strict=True):
             assert theirs == pytest.approx(ours, abs=SAME)
-        own, found = (p.coefficients[m.group].numbers() for p, m in ((before, mine[3]), (after, read[3])))
-        assert found == pytest.approx(own, rel=SAME)
+        own, returned = (p.coefficients[m.group].numbers() for p, m in ((before, mine[3]), (after, read[3])))
+        assert returned == pytest.approx(own, rel=SAME)
         assert bool(read[3].diffracts) == bool(mine[3].diffracts)
     bare = [build(p.model_copy(update={"hydrostatics": Hydrostatics()})) for p in (before, after)]
-    mine, read = (next(one for one in model.loads if isinstance(one, Buoyancy)).upright(1.0) for model in bare)
+    mine, read = (next(load for load in model.loads if isinstance(load, Buoyancy)).upright(1.0) for model in bare)
     for key in ("displaced_volume", "centre_of_buoyancy", "C33", "C44", "C55"):
         assert read[key] == pytest.approx(mine[key], rel=SAME), key
 
@@ -99,13 +99,15 @@ def test_catenaries_come_back(tmp_path: Path) -> None:
     mine, read, water = before.mooring, after.mooring, before.water
     assert isinstance(mine, Catenary) and isinstance(read, Catenary)
     assert read.seabed.depth == 180.0
-    for kind, one in mine.line_types.items():
-        weight = one.weight(water.density, water.gravity)
+    for kind, line in mine.line_types.items():
+        weight = line.weight(water.density, water.gravity)
         assert read.line_types[kind].weight(water.density, water.gravity) == pytest.approx(weight, rel=SAME)
-        assert read.line_types[kind].axial_stiffness == pytest.approx(one.axial_stiffness, rel=SAME)
-    ends = [np.concatenate(copy) for one in mine.lines for copy in one.copies()]
-    assert np.array([[*one.anchor, *one.fairlead] for one in read.lines]) == pytest.approx(np.array(ends), rel=SAME, abs=1e-8)
-    assert all([(s.type, s.length) for s in one.segments] == [("chain", 600.0), ("rope", 240.0)] for one in read.lines)
+        assert read.line_types[kind].axial_stiffness == pytest.approx(line.axial_stiffness, rel=SAME)
+    ends = [np.concatenate(copy) for line in mine.lines for copy in line.copies()]
+    assert np.array([[*line.anchor, *line.fairlead] for line in read.lines]) == pytest.approx(
+        np.array(ends), rel=SAME, abs=1e-8
+    )
+    assert all([(s.type, s.length) for s in line.segments] == [("chain", 600.0), ("rope", 240.0)] for line in read.lines)
 
 
 def test_what_raft_cannot_have_is_named_with_its_value() -> None:
@@ -114,7 +116,7 @@ def test_what_raft_cannot_have_is_named_with_its_value() -> None:
     assert "cutoff 0.05" in said("catenary", "column.drag_z", Treatment.LEFT_OUT)
     assert "0.5" in said("catenary", "seabed.friction", Treatment.LEFT_OUT)
     assert "9.80665" in said("catenary", "mooring.line_types", Treatment.APPROXIMATED)
-    left = next(one for one in exported("volturnus-s").items if one.source == "mooring.stiffness")
+    left = next(item for item in exported("volturnus-s").items if item.source == "mooring.stiffness")
     assert left.warning and "mooring.C11 = 7.19e+04 N/m" in left.meaning and "C66" not in left.meaning
     assert "ends of the section exchanged" in said("catenary", "members: d, box", Treatment.APPROXIMATED)
     assert "no waterplane" in said("iti-barge", "members: buoyancy", Treatment.LEFT_OUT)
@@ -124,18 +126,18 @@ def test_numbers_as_raft_defines_them() -> None:
     """Read by PyYAML as RAFT reads it. By hand: a pontoon's Cd is [Cd_z, Cd_t]; the load is buoyancy less weight."""
     design: dict[str, Any] = yaml.safe_load(exported("volturnus-s").texts[DESIGN])
     platform = design["platform"]
-    pontoon = next(one for one in platform["members"] if one["name"] == "pontoon")
+    pontoon = next(entry for entry in platform["members"] if entry["name"] == "pontoon")
     assert pontoon["Cd"] == [[4.96, 1.84]] * 2 and pontoon["Ca"] == [[1.87, 0.11]] * 2 and pontoon["CdEnd"] == 0.0
     assert platform["yaw_stiffness"] == 2.524e8
     volume = np.pi / 4 * 20 * (10.0**2 + 3 * 12.5**2) + 3 * 40.5 * 12.5 * 7.0
-    load = next(one for one in platform["additional_effects"] if one["type"] == "mean_load")["load"]
+    load = next(entry for entry in platform["additional_effects"] if entry["type"] == "mean_load")["load"]
     assert load[2] == pytest.approx((20093000.0 - 1025.0 * volume) * 9.80665, abs=1.0)
 
 
 def test_drag_of_an_upright_box_is_the_same_force() -> None:
     """RAFT: along its first side 1/2 rho Cd side[0] length; here the side across the flow is side[1]."""
     members = yaml.safe_load(exported("catenary").texts[DESIGN])["platform"]["members"]
-    box = next(one for one in members if one["name"] == "box")
+    box = next(member for member in members if member["name"] == "box")
     assert box["rA"][2] < box["rB"][2] and box["d"] == [[12.0, 9.0], [8.0, 6.0]] and box["gamma"] == 20.0
     drag = np.array(box["Cd"]) * np.array(box["d"])
     assert drag == pytest.approx(1.3 * np.array(box["d"])[:, ::-1], rel=SAME)
@@ -150,7 +152,7 @@ def test_springs_are_lines_of_next_to_no_weight() -> None:
     (kind,), (spring,) = section["line_types"], section["lines"]
     assert spring["length"] == 80.0 and kind["stiffness"] == 4.0e6
     assert kind["mass_density"] * 9.81 * 80.0 == pytest.approx(1e-9 * 4.0e6)
-    assert [one["type"] for one in section["points"]] == ["fixed", "vessel"]
+    assert [point["type"] for point in section["points"]] == ["fixed", "vessel"]
 
 
 def test_an_end_at_still_water_and_covered_ends() -> None:
@@ -160,10 +162,10 @@ def test_an_end_at_still_water_and_covered_ends() -> None:
     top = {"name": "top", "group": "column", "shape": "circ", "d": 6.0, "rA": [0, 0, -10], "rB": [0, 0, 0]}
     raw["members"] = [low, top, *raw["members"][1:]]
     platform = Platform.model_validate(raw)
-    found = export_design(source_of(platform, build(platform)))
-    members = {one["name"]: one for one in yaml.safe_load(found.texts[DESIGN])["platform"]["members"]}
+    design = export_design(source_of(platform, build(platform)))
+    members = {part["name"]: part for part in yaml.safe_load(design.texts[DESIGN])["platform"]["members"]}
     assert members["top"]["rB"] == [0.0, 0.0, 0.001]
     assert members["top"]["CdEnd"] == pytest.approx([0.0, 2.23])
     assert members["low"]["CdEnd"] == pytest.approx([2.23, 2.23 * (1 - 0.36)])
     assert members["low"]["CaEnd"] == pytest.approx([0.12, 0.12 * (1 - 0.216)])
-    assert any("z = 0" in one.meaning for one in found.items)
+    assert any("z = 0" in part.meaning for part in design.items)

@@ -68,10 +68,10 @@ def test_crests_are_higher_and_troughs_flatter_and_the_height_stays() -> None:
 def test_an_irregular_sea_of_one_component_is_the_same_wave() -> None:
     """But for the set-down, which a regular wave's mean level includes."""
     sea = regular_wave(HEIGHT, PERIOD, WATER, order=2)
-    one = jh.IrregularSea(components(np.array([HEIGHT / 2]), np.array([2 * math.pi / PERIOD]), WATER, first=1), WATER, 2)
+    irregular = jh.IrregularSea(components(np.array([HEIGHT / 2]), np.array([2 * math.pi / PERIOD]), WATER, first=1), WATER, 2)
     points = np.array([[0.0, 20.0], [0.0, 5.0], [-2.0, -9.0]])
-    assert_allclose(flow(sea, 2.0, points).velocity, flow(one, 2.0, points).velocity, atol=1e-12)
-    apart = np.asarray(elevation(sea, 2.0, points[:2])) - np.asarray(elevation(one, 2.0, points[:2]))
+    assert_allclose(flow(sea, 2.0, points).velocity, flow(irregular, 2.0, points).velocity, atol=1e-12)
+    apart = np.asarray(elevation(sea, 2.0, points[:2])) - np.asarray(elevation(irregular, 2.0, points[:2]))
     assert_allclose(apart, apart[0], atol=1e-12)
 
 
@@ -80,34 +80,34 @@ def coefficients(monkeypatch):
     """Stream functions from the stored coefficients, so that raschii need not be installed."""
 
     def stored(height, period, depth, gravity, order):
-        one = next(w for w in RASCHII if (w["height"], w["period"], w["depth"], w["order"]) == (height, period, depth, order))
-        return StreamFunction(one["wavenumber"], np.array(one["E"]), np.array(one["B"]))
+        wave = next(w for w in RASCHII if (w["height"], w["period"], w["depth"], w["order"]) == (height, period, depth, order))
+        return StreamFunction(wave["wavenumber"], np.array(wave["E"]), np.array(wave["B"]))
 
     monkeypatch.setattr(module, "stream_function", stored)
 
 
-@pytest.mark.parametrize("one", RASCHII, ids=lambda one: f"{one['height']:g}m-{one['depth']:g}m")
-def test_our_sums_are_raschii_s(coefficients, one) -> None:
+@pytest.mark.parametrize("wave", RASCHII, ids=lambda wave: f"{wave['height']:g}m-{wave['depth']:g}m")
+def test_our_sums_are_raschii_s(coefficients, wave) -> None:
     """Elevation everywhere; velocity and acceleration below the surface, above still water level, too."""
-    water = jh.Environment(1025.0, one["depth"], 9.81)
-    sea = regular_wave(one["height"], one["period"], water, order=one["order"])
-    for i, time in enumerate(one["t"]):
-        eta, velocity, acceleration, _ = at(sea, time, one["x"], one["z"])
-        assert_allclose(eta, one["eta"][i], atol=1e-7 * one["height"])
-        wet = np.asarray(one["z"]) < eta
+    water = jh.Environment(1025.0, wave["depth"], 9.81)
+    sea = regular_wave(wave["height"], wave["period"], water, order=wave["order"])
+    for i, time in enumerate(wave["t"]):
+        eta, velocity, acceleration, _ = at(sea, time, wave["x"], wave["z"])
+        assert_allclose(eta, wave["eta"][i], atol=1e-7 * wave["height"])
+        wet = np.asarray(wave["z"]) < eta
         assert wet.sum() >= 2
-        for mine, other in ((velocity, one["velocity"]), (acceleration, one["acceleration"])):
+        for mine, other in ((velocity, wave["velocity"]), (acceleration, wave["acceleration"])):
             assert_allclose(mine[:, wet], np.asarray(other[i]).T[:, wet], rtol=1e-6, atol=1e-7)
 
 
 def test_a_low_steep_wave_is_stokes_and_airy(coefficients) -> None:
     """H = 2 m, 10 s, 50 m deep, ka = 0.043: apart by (ka)² relative to the first order, far less than the second is of it."""
-    one = RASCHII[0]
-    water = jh.Environment(1025.0, one["depth"], 9.81)
-    first, second, steep = (regular_wave(one["height"], one["period"], water, order=order) for order in (1, 2, one["order"]))
+    wave = RASCHII[0]
+    water = jh.Environment(1025.0, wave["depth"], 9.81)
+    first, second, steep = (regular_wave(wave["height"], wave["period"], water, order=order) for order in (1, 2, wave["order"]))
     x, z = np.linspace(-40.0, 40.0, 9), np.full(9, -3.0)
     of_first, of_second, of_steep = (at(sea, 0.7, x, z) for sea in (first, second, steep))
-    ka = one["height"] / 2 * float(first.waves.vector[0, 0])
+    ka = wave["height"] / 2 * float(first.waves.vector[0, 0])
     for stokes, exact in zip(of_second, of_steep):
         size = np.abs(exact).max()
         assert np.abs(stokes - exact).max() < 2.0 * ka**2 * size
@@ -117,8 +117,8 @@ def test_a_low_steep_wave_is_stokes_and_airy(coefficients) -> None:
 
 def test_the_flow_of_a_steep_wave_obeys_its_surface_condition(coefficients) -> None:
     """No water through the surface, w = eta_t + u eta_x, with derivatives by JAX; 12 m in 10 s, 50 m deep."""
-    one = RASCHII[1]
-    sea = regular_wave(one["height"], one["period"], jh.Environment(1025.0, one["depth"], 9.81), order=one["order"])
+    wave = RASCHII[1]
+    sea = regular_wave(wave["height"], wave["period"], jh.Environment(1025.0, wave["depth"], 9.81), order=wave["order"])
 
     def eta(x, time):
         return sea.elevation(time, jnp.array([[x], [0.0]]))[0]
@@ -137,19 +137,19 @@ def test_the_flow_of_a_steep_wave_obeys_its_surface_condition(coefficients) -> N
 @pytest.mark.slow
 def test_a_platform_is_moved_by_steep_waves(coefficients) -> None:
     """Finite motion, larger crests than troughs in the recorded wave."""
-    one = RASCHII[2]
+    wave = RASCHII[2]
     model = jh.load_model("volturnus-s")
-    water = jh.Environment(1025.0, one["depth"], 9.81)
-    sea = regular_wave(one["height"], one["period"], water, order=one["order"], ramp=12.0)
+    water = jh.Environment(1025.0, wave["depth"], 9.81)
+    sea = regular_wave(wave["height"], wave["period"], water, order=wave["order"], ramp=12.0)
     assert isinstance(sea, SteepWave)
-    found = jh.simulate(model, np.arange(0.0, 20.0, 1.0), sea, step=0.25)
-    assert np.isfinite(np.asarray(found.position)).all() and float(np.ptp(np.asarray(found["surge"]))) > 0.5
+    motion = jh.simulate(model, np.arange(0.0, 20.0, 1.0), sea, step=0.25)
+    assert np.isfinite(np.asarray(motion.position)).all() and float(np.ptp(np.asarray(motion["surge"]))) > 0.5
 
 
 def test_a_series_cut_short_is_remarked(coefficients) -> None:
-    one = RASCHII[1]
-    sea = regular_wave(one["height"], one["period"], jh.Environment(1025.0, 50.0, 9.81), order=one["order"])
-    assert series_remarks(sea, one["order"]) == [] and series_remarks(regular_wave(2.0, 9.0, WATER, order=2), 2) == []
+    wave = RASCHII[1]
+    sea = regular_wave(wave["height"], wave["period"], jh.Environment(1025.0, 50.0, 9.81), order=wave["order"])
+    assert series_remarks(sea, wave["order"]) == [] and series_remarks(regular_wave(2.0, 9.0, WATER, order=2), 2) == []
     short = module._steep(StreamFunction(0.05, np.array([1.0, 0.1, 0.02]), np.ones(3)), 0.7, WATER, 0.0, 0.0, 0.0, "vertical")
     (remark,) = series_remarks(short, 3)
     assert remark.warning and "the last of 3 harmonics of the elevation has 2.0% of the first" in remark.text
@@ -175,8 +175,8 @@ def test_without_raschii_a_message_says_what_to_install(monkeypatch) -> None:
 
 def test_raschii_itself_gives_the_stored_coefficients() -> None:
     pytest.importorskip("raschii")
-    one = RASCHII[0]
-    found = stream_function(one["height"], one["period"], one["depth"], 9.81, one["order"])
-    assert found.wavenumber == pytest.approx(one["wavenumber"], rel=1e-9)
-    assert_allclose(found.elevation, one["E"], atol=1e-9)
-    assert_allclose(found.potential, one["B"], atol=1e-9)
+    wave = RASCHII[0]
+    coefficients_found = stream_function(wave["height"], wave["period"], wave["depth"], 9.81, wave["order"])
+    assert coefficients_found.wavenumber == pytest.approx(wave["wavenumber"], rel=1e-9)
+    assert_allclose(coefficients_found.elevation, wave["E"], atol=1e-9)
+    assert_allclose(coefficients_found.potential, wave["B"], atol=1e-9)

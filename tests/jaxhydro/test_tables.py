@@ -45,9 +45,9 @@ def changed(folder: Path, change, name: str = "hull.nc") -> Path:
 def test_frequencies_that_capytaine_skipped_are_left_out() -> None:
     """k h < 0.1 at 0.02 rad/s: Capytaine 3.0 itself left NaN there."""
     notes: list[str] = []
-    found = read_capytaine(CYLINDER, notes=notes)
-    assert_allclose(found.omega, np.r_[0.2, np.arange(0.6, 5.01, 0.4)])
-    assert np.isfinite(found.added_mass).all() and np.isfinite(found.damping).all()
+    coefficients = read_capytaine(CYLINDER, notes=notes)
+    assert_allclose(coefficients.omega, np.r_[0.2, np.arange(0.6, 5.01, 0.4)])
+    assert np.isfinite(coefficients.added_mass).all() and np.isfinite(coefficients.damping).all()
     assert any("1 frequency left out, at which nothing was computed (NaN): omega 0.02 rad/s" in note for note in notes)
     notes = []
     assert read_capytaine_excitation(CYLINDER, notes=notes).omega[0] == 0.2 and any("omega 0.02 rad/s" in n for n in notes)
@@ -76,8 +76,8 @@ def test_a_frequency_that_is_partly_missing_is_told(tmp_path: Path) -> None:
 
 def test_long_waves_lift_by_the_waterplane_and_push_by_the_acceleration() -> None:
     """X3 -> rho g A in phase with the crest; X1 -> i rho V (1 + Ca) g k, a quarter period ahead; X5 = z X1 at mid-draught."""
-    found = read_capytaine_excitation(CYLINDER)
-    omega, force = np.asarray(found.omega), np.asarray(found.force)
+    table = read_capytaine_excitation(CYLINDER)
+    omega, force = np.asarray(table.omega), np.asarray(table.force)
     mass = read_capytaine(CYLINDER).added_mass
     assert_allclose(force[2, 0], RHO * G * AREA, rtol=0.04)
     k = float(wavenumber(omega[0], 50.0, G))
@@ -105,10 +105,10 @@ def test_froude_krylov_and_diffraction_add_up(tmp_path: Path) -> None:
 def test_motions_about_another_point_are_moved_to_the_reference_point() -> None:
     """The dataset's are about z = -1.5 m: about the surface A15 = -1.5 A11 + a part of its own, A55 by both (parallel axes)."""
     notes: list[str] = []
-    found = read_capytaine(CYLINDER, notes=notes)
+    coefficients = read_capytaine(CYLINDER, notes=notes)
     with xr.open_dataset(CYLINDER) as data:
         own = data.added_mass.sel(omega=1.0).transpose("influenced_dof", "radiating_dof").values
-    moved = found.added_mass[list(found.omega).index(1.0)]
+    moved = coefficients.added_mass[list(coefficients.omega).index(1.0)]
     assert_allclose(moved[0, 4], own[0, 2] - 1.5 * own[0, 0], rtol=1e-9)
     assert_allclose(moved[4, 4], own[2, 2] - 1.5 * (own[0, 2] + own[2, 0]) + 2.25 * own[0, 0], rtol=1e-9)
     assert_allclose(moved[2, 2], own[1, 1])
@@ -126,9 +126,9 @@ def test_forces_are_scaled_to_the_platforms_water() -> None:
 def two_bodies(data: xr.Dataset) -> xr.Dataset:
     """The cylinder and one at x = 10 m with twice its coefficients, as Capytaine names motions of several bodies."""
 
-    def named(one: xr.Dataset, name: str, factor: float) -> xr.Dataset:
+    def named(dataset: xr.Dataset, name: str, factor: float) -> xr.Dataset:
         dofs = {dim: [f"{name}__{dof}" for dof in data[dim].values] for dim in ("radiating_dof", "influenced_dof")}
-        return (factor * one).assign_coords(dofs)
+        return (factor * dataset).assign_coords(dofs)
 
     names = ["added_mass", "radiation_damping", "excitation_force", "hydrostatic_stiffness"]
     data = data[names].drop_vars(["body", "center_of_mass", "rotation_center"], errors="ignore")
@@ -158,11 +158,11 @@ def test_one_of_several_bodies_is_chosen_by_its_name(tmp_path: Path) -> None:
 
 def test_hydrostatics_of_a_dataset() -> None:
     """C33 = rho g A, C55 = rho g (I + V z_b) - weight, V: of a cylinder of 1 m and 3 m (flat panels have 1 % less)."""
-    found = read_capytaine_hydrostatics(CYLINDER)
-    assert_allclose(found.stiffness[2, 2], RHO * G * AREA, rtol=0.015)
-    assert_allclose(found.volume, VOLUME, rtol=0.015)
+    hydrostatics = read_capytaine_hydrostatics(CYLINDER)
+    assert_allclose(hydrostatics.stiffness[2, 2], RHO * G * AREA, rtol=0.015)
+    assert_allclose(hydrostatics.volume, VOLUME, rtol=0.015)
     own = RHO * G * (math.pi / 4 * RADIUS**4 - 1.5 * VOLUME)
-    assert_allclose(found.stiffness[4, 4] + RHO * G * found.volume * found.centre_of_mass, own, rtol=0.015)
+    assert_allclose(hydrostatics.stiffness[4, 4] + RHO * G * hydrostatics.volume * hydrostatics.centre_of_mass, own, rtol=0.015)
 
 
 PLATFORM = """
@@ -195,8 +195,8 @@ def test_a_platform_of_one_dataset_moves_as_potential_theory_has_it(tmp_path: Pa
     infinite = float((data.added_mass[:, 2, 2] - rises).mean())
     model = model_of(tmp_path, *lines, f"added_mass: {{A33: {infinite}, A11: 5000, A22: 5000, A44: 1.0e4, A55: 1.0e4}}")
     sea = jh.regular_wave(0.02, 2 * math.pi / omega, model.environment, ramp=60.0)
-    found = jh.simulate(model, np.arange(0.0, 400.0, 0.1), sea)
-    amplitude = 0.5 * np.ptp(np.asarray(found["heave"])[-200:])
+    motion = jh.simulate(model, np.arange(0.0, 400.0, 0.1), sea)
+    amplitude = 0.5 * np.ptp(np.asarray(motion["heave"])[-200:])
     x = np.asarray(read_capytaine_excitation(CYLINDER).force)[2, i]
     c = read_capytaine_hydrostatics(CYLINDER).stiffness[2, 2]
     expected = abs(x / (c - omega**2 * (9317.0 + data.added_mass[i, 2, 2]) + 1j * omega * data.damping[i, 2, 2]))
@@ -238,10 +238,10 @@ OUT = """
 def test_a_hst_file_is_made_dimensional(tmp_path: Path) -> None:
     """rho g L^2 for heave, L^3 for heave with pitch, L^4 for rotations."""
     path = hst(tmp_path, {(3, 3): 3.0, (4, 4): 5.0, (5, 5): 6.0, (3, 5): -0.5, (5, 3): -0.5})
-    found = read_hydrostatics(path, RHO, G, length=2.0)
-    assert_allclose(np.diag(found.stiffness), RHO * G * np.array([0, 0, 3.0 * 4, 5.0 * 16, 6.0 * 16, 0]))
-    assert_allclose([found.stiffness[2, 4], found.stiffness[4, 2]], RHO * G * -0.5 * 8)
-    assert found.volume is None
+    hydrostatics = read_hydrostatics(path, RHO, G, length=2.0)
+    assert_allclose(np.diag(hydrostatics.stiffness), RHO * G * np.array([0, 0, 3.0 * 4, 5.0 * 16, 6.0 * 16, 0]))
+    assert_allclose([hydrostatics.stiffness[2, 4], hydrostatics.stiffness[4, 2]], RHO * G * -0.5 * 8)
+    assert hydrostatics.volume is None
 
 
 def test_a_platform_takes_its_stiffness_from_a_hst_file(tmp_path: Path) -> None:
@@ -260,9 +260,9 @@ def test_a_platform_takes_its_stiffness_from_a_hst_file(tmp_path: Path) -> None:
 def test_an_out_file_has_the_volume_and_its_own_weight(tmp_path: Path) -> None:
     """C44 about the platform's weight: C44 + rho g V z_g of the file is buoyancy's."""
     (tmp_path / "hull.out").write_text(OUT, encoding="utf-8")
-    found = read_hydrostatics(tmp_path / "hull.out", RHO, G)
-    assert found.volume == 9.318 and found.centre_of_mass == -2.0
-    assert_allclose(found.stiffness[2, 4], 0.2 * RHO * G)
+    hydrostatics = read_hydrostatics(tmp_path / "hull.out", RHO, G)
+    assert hydrostatics.volume == 9.318 and hydrostatics.centre_of_mass == -2.0
+    assert_allclose(hydrostatics.stiffness[2, 4], 0.2 * RHO * G)
     model = model_of(tmp_path, "hydrostatics: {file: hull.out}", mass=9318.0)
     weights = RHO * G * 9.318 * (-2.0 + 1.5)
     assert_allclose(restoring(model), [3.1 * RHO * G, 5.0 * RHO * G + weights, 6.0 * RHO * G + weights], rtol=1e-6)
@@ -317,17 +317,17 @@ def wamit_files(folder: Path, by: str, column: np.ndarray | None = None) -> None
     """The cylinder's coefficients as .1 and .3, the first column by period, rad/s or Hz."""
     data, waves = read_capytaine(CYLINDER), read_capytaine_excitation(CYLINDER)
     first = {"period": 2 * math.pi / data.omega, "rad/s": data.omega, "Hz": data.omega / (2 * math.pi)}[by]
-    one, three = [], []
+    rows_1, rows_3 = [], []
     for k, w in enumerate(data.omega):
         for i in range(6):
             for j in range(6):
                 if (i + j) % 2 == 0:
                     a, b = data.added_mass[k, i, j] / RHO, data.damping[k, i, j] / RHO / w
-                    one.append(f"{first[k]:.6E} {i + 1} {j + 1} {a:.6E} {b:.6E}")
+                    rows_1.append(f"{first[k]:.6E} {i + 1} {j + 1} {a:.6E} {b:.6E}")
             x = complex(waves.force[i, k]) / (RHO * G)
-            three.append(f"{first[k]:.6E} 0.0 {i + 1} {abs(x):.6E} {np.degrees(np.angle(x)):.4f} {x.real:.6E} {x.imag:.6E}")
-    (folder / "hull.1").write_text("\n".join(one) + "\n", encoding="utf-8")
-    (folder / "hull.3").write_text("\n".join(three) + "\n", encoding="utf-8")
+            rows_3.append(f"{first[k]:.6E} 0.0 {i + 1} {abs(x):.6E} {np.degrees(np.angle(x)):.4f} {x.real:.6E} {x.imag:.6E}")
+    (folder / "hull.1").write_text("\n".join(rows_1) + "\n", encoding="utf-8")
+    (folder / "hull.3").write_text("\n".join(rows_3) + "\n", encoding="utf-8")
 
 
 @pytest.mark.parametrize("by", ["period", "rad/s", "Hz"])
@@ -351,9 +351,9 @@ def test_files_by_period_or_frequency_are_one(tmp_path: Path, by: str) -> None:
 def test_a_column_that_is_another_is_told(tmp_path: Path, true: str, declared: str) -> None:
     """By the force of long waves; nothing where the column is what was declared."""
     wamit_files(tmp_path, true)
-    found = read_excitation(tmp_path / "hull.3", RHO, G, by=declared)
+    table = read_excitation(tmp_path / "hull.3", RHO, G, by=declared)
     hull = LongWaves(RHO * G * AREA, RHO * VOLUME, 50.0, G)
-    said = excitation_column(np.asarray(found.omega), np.asarray(found.force), declared, "hull.3", hull)
+    said = excitation_column(np.asarray(table.omega), np.asarray(table.force), declared, "hull.3", hull)
     assert bool(said) == (true != declared)
     if said:
         assert "the first column is probably" in said[0] and said[0].endswith(f"See `excitation.by`: {true}")
@@ -415,18 +415,18 @@ def test_drift_tells_a_period_from_a_frequency(tmp_path: Path) -> None:
 
 
 def test_coefficients_that_are_not_symmetric_are_told() -> None:
-    found = read_capytaine(CYLINDER)
-    assert not asymmetry(found, "hull.1")
-    found.damping[:, 0, 4] *= 1.5
-    assert asymmetry(found, "hull.1")[0].startswith("hull.1: damping is not symmetric: (1, 5) and (5, 1) differ by")
+    coefficients = read_capytaine(CYLINDER)
+    assert not asymmetry(coefficients, "hull.1")
+    coefficients.damping[:, 0, 4] *= 1.5
+    assert asymmetry(coefficients, "hull.1")[0].startswith("hull.1: damping is not symmetric: (1, 5) and (5, 1) differ by")
 
 
 @pytest.mark.skipif(not WAMIT.is_file(), reason="../shared/reference has no iea15-umaine")
 def test_a_published_hull_has_nothing_to_tell() -> None:
     """VolturnUS-S by its WAMIT files, by periods: its heave and surge are those of long waves."""
-    found = read_excitation(WAMIT.with_suffix(".3"), 1025.0, G)
+    table = read_excitation(WAMIT.with_suffix(".3"), 1025.0, G)
     hull = LongWaves(4.45e6, 20.2e6, 200.0, G)
-    assert not excitation_column(np.asarray(found.omega), np.asarray(found.force), "period", "x", hull)
+    assert not excitation_column(np.asarray(table.omega), np.asarray(table.force), "period", "x", hull)
     statics = read_hydrostatics(WAMIT.with_suffix(".hst"), 1025.0, G)
     assert_allclose([statics.stiffness[2, 2], statics.stiffness[3, 3]], [4.455e6, 2.194e9], rtol=1e-3)
 
@@ -436,12 +436,12 @@ def test_a_published_hull_has_nothing_to_tell() -> None:
 
 def test_one_of_several_bodies_of_a_wamit_file_is_chosen_by_its_number(tmp_path: Path) -> None:
     wamit_files(tmp_path, "period")
-    one = (tmp_path / "hull.1").read_text(encoding="utf-8").splitlines()
+    lines = (tmp_path / "hull.1").read_text(encoding="utf-8").splitlines()
     three = (tmp_path / "hull.3").read_text(encoding="utf-8").splitlines()
-    moved = [line.split() for line in one]
+    moved = [line.split() for line in lines]
     second = [" ".join([p, str(int(i) + 6), str(int(j) + 6), str(3 * float(a)), b]) for p, i, j, a, b in moved]
     cross = [" ".join([p, i, str(int(j) + 6), a, b]) for p, i, j, a, b in moved]
-    (tmp_path / "hull.1").write_text("\n".join([*one, *second, *cross]) + "\n", encoding="utf-8")
+    (tmp_path / "hull.1").write_text("\n".join([*lines, *second, *cross]) + "\n", encoding="utf-8")
     more = [" ".join([p, beta, str(int(i) + 6), *rest]) for p, beta, i, *rest in (line.split() for line in three)]
     (tmp_path / "hull.3").write_text("\n".join([*three, *more]) + "\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"motions I and J of one body, 1 to 6, found 7 7. A file of 2 bodies: say which"):

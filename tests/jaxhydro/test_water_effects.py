@@ -117,10 +117,10 @@ def test_what_a_point_off_the_reference_reads() -> None:
     position = np.random.default_rng(0).uniform(-0.5, 0.5, (2, 3, 6))
     load = with_values(SensorReference(), x=4.0, z=-6.0)
     offset = np.array([4.0, 0.0, -6.0])
-    found = np.asarray(seen(load, position))
+    actual = np.asarray(seen(load, position))
     turned = Rotation.from_euler("ZYX", position[..., :2:-1].reshape(-1, 3)).apply(offset).reshape(2, 3, 3)
-    assert_allclose(found[..., :3], position[..., :3] + turned - offset, atol=1e-14)
-    assert (found[..., 3:] == position[..., 3:]).all()
+    assert_allclose(actual[..., :3], position[..., :3] + turned - offset, atol=1e-14)
+    assert (actual[..., 3:] == position[..., 3:]).all()
     assert (np.asarray(seen(SensorReference(), position)) == position).all()
     upright = position * [1, 1, 1, 0, 0, 0]
     assert (np.asarray(seen(load, upright)) == upright).all()
@@ -167,12 +167,12 @@ def test_a_moved_sea_is_one_of_other_phases(order: int, heading: float) -> None:
     expected = expected.direct()
     time = jnp.asarray(23.5)
     *exact, slow = water(expected, time, points)
-    for one, tolerance in ((prepared, 1e-5), (sea.direct(), 1e-12)):
-        *found, drifting = water(one, time, points, load)
-        for part, other in zip(found, exact, strict=True):
+    for sea_form, tolerance in ((prepared, 1e-5), (sea.direct(), 1e-12)):
+        *actual, drifting = water(sea_form, time, points, load)
+        for part, other in zip(actual, exact, strict=True):
             assert_allclose(part, other, atol=5 * tolerance * np.abs(other).max())
-        assert one is prepared or np.abs(np.asarray(drifting) - np.asarray(slow)).max() < 1e-9
-    same = zip(*(jax.tree.leaves(one) for one in (through(WaveGaugePosition(), prepared), prepared)), strict=True)
+        assert sea_form is prepared or np.abs(np.asarray(drifting) - np.asarray(slow)).max() < 1e-9
+    same = zip(*(jax.tree.leaves(sea_form) for sea_form in (through(WaveGaugePosition(), prepared), prepared)), strict=True)
     assert all(np.array_equal(a, b) for a, b in same)
     assert isinstance(load.through(jh.StillWater()), jh.StillWater)
 
@@ -185,10 +185,10 @@ def test_a_moved_envelope_goes_with_the_group() -> None:
     times = np.linspace(20.0, 240.0, 60)
     seas = through(load, prepared), through(load, direct), direct
     drifts = one_program(lambda sea, times: jax.vmap(sea.drift)(times))
-    found, exact, still = (np.asarray(drifts(one, times)) for one in seas)
-    missed, moved = (np.abs(one - exact).max(axis=0) for one in (found, still))
+    actual, exact, still = (np.asarray(drifts(series, times)) for series in seas)
+    missed, moved = (np.abs(series - exact).max(axis=0) for series in (actual, still))
     assert (missed[:3] < 0.1 * moved[:3]).all()
-    assert_allclose(found[:, 3], still[:, 3], rtol=1e-9)  # the mean is the same everywhere
+    assert_allclose(actual[:, 3], still[:, 3], rtol=1e-9)  # the mean is the same everywhere
 
 
 # drift
@@ -198,12 +198,12 @@ def squares(sea: jh.IrregularSea, time: float) -> np.ndarray:
     """The four signals by a double sum over components."""
     waves = sea.components
     amplitude, omega = np.asarray(waves.complex_amplitude()), np.asarray(waves.omega)
-    found = np.zeros(4)
+    actual = np.zeros(4)
     for a, p in zip(amplitude, omega, strict=True):
         for b, q in zip(amplitude, omega, strict=True):
             pair = a * np.conj(b) * np.exp(1j * (p - q) * time)
-            found += pair.real, (-1j * np.sign(p - q) * pair).real, pair.real * (p**2 + q**2) / 2 / 0.36, pair.real * (p == q)
-    return found
+            actual += pair.real, (-1j * np.sign(p - q) * pair).real, pair.real * (p**2 + q**2) / 2 / 0.36, pair.real * (p == q)
+    return actual
 
 
 @pytest.mark.parametrize("step", [0.25, 0.5])
@@ -242,8 +242,8 @@ def test_wave_drift_is_its_transfer_function() -> None:
     exact = (amplitude[:, None] * np.conj(amplitude) * np.exp(1j * (p - q) * t) * transfer).sum()
     assert abs(exact.imag) < 1e-9 * abs(exact)
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,)))
-    found, _ = acts(model, np.zeros(6), np.zeros(6), (None,), prepared, t)
-    assert_allclose(found, exact.real * np.eye(6)[[0, 4]].sum(axis=0), rtol=1e-9)
+    actual, _ = acts(model, np.zeros(6), np.zeros(6), (None,), prepared, t)
+    assert_allclose(actual, exact.real * np.eye(6)[[0, 4]].sum(axis=0), rtol=1e-9)
     assert_allclose(force(model, sea=SEA)[0], (d0 + d2 * (2 * math.pi / 9.0 / 0.6) ** 2) * 1.5**2, rtol=1e-9)
     assert (force(model, VELOCITY) == 0).all()
 
@@ -263,8 +263,8 @@ def test_wave_drift_damping_of_a_sea_state_and_of_groups(steady: float) -> None:
     model = model_of(build(COLUMN), with_values(WaveDriftDamping.neutral(("surge",)), coefficient=3e4, steady=steady))
     beat = 2 * math.pi * (1 / 9.0 - 1 / 11.0)
     mean, group = 1.0 + 1.5**2, 3.0 * math.cos(beat * 7.7)
-    found, _ = acts(model, np.zeros(6), VELOCITY, (None,), WaveSea(waves[0] + waves[1], WATER), 7.7)
-    assert_allclose(found[0], -3e4 * (mean + (1 - steady) * group) * VELOCITY[0], rtol=1e-9)
+    actual, _ = acts(model, np.zeros(6), VELOCITY, (None,), WaveSea(waves[0] + waves[1], WATER), 7.7)
+    assert_allclose(actual[0], -3e4 * (mean + (1 - steady) * group) * VELOCITY[0], rtol=1e-9)
 
 
 def test_a_prepared_sea_costs_nothing_more_where_nobody_drifts() -> None:
@@ -277,7 +277,7 @@ def test_a_prepared_sea_costs_nothing_more_where_nobody_drifts() -> None:
         run = jax.jit(lambda leaves: model.rate(jnp.asarray(12.5), model.rest(), jax.tree.unflatten(shape, leaves)).velocity)
         return run.lower(leaves).compile().cost_analysis()["flops"], np.asarray(run(leaves))
 
-    bare, whole = (cost(plain, one) for one in (dataclasses.replace(sea, envelope=None), sea))
+    bare, whole = (cost(plain, evaluated) for evaluated in (dataclasses.replace(sea, envelope=None), sea))
     assert bare[0] == whole[0] and (bare[1] == whole[1]).all()
     assert cost(plain.with_effect(WaveDrift.neutral(("surge", "heave", "pitch"))), sea)[0] > whole[0]
 
@@ -292,15 +292,15 @@ def test_a_regular_wave_comes_back() -> None:
     omega, k = 2 * math.pi / 7.0, float(np.hypot(*np.asarray(sea.waves.vector)[:, 0]))
     x, z, t = 17.0, -4.0, 23.0
     points = np.array([[x * math.cos(0.5)], [x * math.sin(0.5)], [z]])
-    there, back = omega * t - k * x, omega * (t - 13.0) + k * x
+    incident, reflected = omega * t - k * x, omega * (t - 13.0) + k * x
     met = through(load, sea)
-    assert_allclose(elevation(met, t, points[:2]), math.cos(there) - 0.2 * math.cos(back), atol=1e-12)
-    found = flow(met, t, points)
+    assert_allclose(elevation(met, t, points[:2]), math.cos(incident) - 0.2 * math.cos(reflected), atol=1e-12)
+    actual = flow(met, t, points)
     cosh, sinh = (f(k * (z + 200)) / math.cosh(k * 200) for f in (math.cosh, math.sinh))
-    along = G * k / omega * cosh * (math.cos(there) + 0.2 * math.cos(back))
-    up = -G * k / omega * sinh * (math.sin(there) - 0.2 * math.sin(back))
-    assert_allclose(np.asarray(found.velocity)[:, 0], [along * math.cos(0.5), along * math.sin(0.5), up], rtol=1e-9)
-    assert_allclose(found.pressure, G * cosh * (math.cos(there) - 0.2 * math.cos(back)), rtol=1e-9)
+    along = G * k / omega * cosh * (math.cos(incident) + 0.2 * math.cos(reflected))
+    up = -G * k / omega * sinh * (math.sin(incident) - 0.2 * math.sin(reflected))
+    assert_allclose(np.asarray(actual.velocity)[:, 0], [along * math.cos(0.5), along * math.sin(0.5), up], rtol=1e-9)
+    assert_allclose(actual.pressure, G * cosh * (math.cos(incident) - 0.2 * math.cos(reflected)), rtol=1e-9)
 
 
 def test_a_prepared_sea_comes_back() -> None:
@@ -310,11 +310,11 @@ def test_a_prepared_sea_comes_back() -> None:
     load = with_values(WaveReflection(delay=8.1), coefficient=0.25)
     points = jnp.array([[-9.0, 21.0], [4.0, 7.0], [-12.0, -1.0]])
     met, exact = load.through(prepared), load.through(sea.direct())
-    for one, other in zip(*(water(one, jnp.asarray(40.5), points) for one in (met, exact)), strict=True):
-        assert_allclose(one, other, atol=2e-5 * np.abs(other).max())
-    for time, one in ((17.75, met), (10.125, met), (40.5, WaveReflection(delay=8.1).through(prepared))):
-        found, expected = (water(which, jnp.asarray(time), points) for which in (one, prepared))
-        assert_allclose(found[0], expected[0], rtol=1e-13)
+    for reflected, other in zip(*(water(reflected, jnp.asarray(40.5), points) for reflected in (met, exact)), strict=True):
+        assert_allclose(reflected, other, atol=2e-5 * np.abs(other).max())
+    for time, reflected in ((17.75, met), (10.125, met), (40.5, WaveReflection(delay=8.1).through(prepared))):
+        actual, expected = (water(which, jnp.asarray(time), points) for which in (reflected, prepared))
+        assert_allclose(actual[0], expected[0], rtol=1e-13)
     assert isinstance(load.through(jh.StillWater()), jh.StillWater)
 
 
@@ -327,8 +327,8 @@ def test_what_the_gauge_saw_come_back() -> None:
     assert_allclose(elevation(met, time, here[:2]), elevation(sea, time, here[:2]), atol=1e-12)
     back, now, then = flow(met, time, here), flow(sea, time, here), flow(sea, time - 8.1, here)
     assert_allclose(back.pressure, now.pressure, rtol=1e-12)
-    found, sent, returned = (along @ np.asarray(one.velocity)[:2] for one in (back, now, then))
-    assert_allclose(found, sent - 0.5 * returned, rtol=1e-9)
+    velocity, sent, returned = (along @ np.asarray(flow_of.velocity)[:2] for flow_of in (back, now, then))
+    assert_allclose(velocity, sent - 0.5 * returned, rtol=1e-9)
 
 
 @pytest.mark.slow
@@ -342,7 +342,7 @@ def test_slopes_of_a_prepared_sea_that_comes_back() -> None:
 
     def met(which, x):  # unchecked: no share is negative, but its derivative at zero has two sides
         here = model.at_values(dict(zip(labels, x))).through(which)
-        return jnp.concatenate([jnp.ravel(one) for one in water(here, jnp.asarray(40.5), points)[:4]])
+        return jnp.concatenate([jnp.ravel(column) for column in water(here, jnp.asarray(40.5), points)[:4]])
 
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,), 3))
     of_prepared, of_direct = partial(met, prepared), partial(met, sea.direct())
@@ -350,12 +350,12 @@ def test_slopes_of_a_prepared_sea_that_comes_back() -> None:
         one_program, (of_prepared, jax.jacfwd(of_prepared), jax.jacrev(of_prepared), jax.jacfwd(of_direct))
     )
     for x in (np.array([0.2, 8.1, 0.6, -1.5]), np.array([0.0, 8.1, 0.0, 0.0])):
-        found, exact = np.asarray(forward(x)), np.asarray(direct(x))
+        actual, exact = np.asarray(forward(x)), np.asarray(direct(x))
         apart = [np.asarray(value(x + e)) - np.asarray(value(x - e)) for e in 1e-5 * np.eye(4)]
-        assert_allclose(found, np.stack(apart, axis=1) / 2e-5, atol=1e-6 * np.abs(found).max())
-        for one, other in zip(found.T, exact.T, strict=True):
-            assert_allclose(one, other, atol=2e-4 * max(np.abs(other).max(), 1e-3))
-        assert_allclose(reverse(x), found, atol=1e-10)
+        assert_allclose(actual, np.stack(apart, axis=1) / 2e-5, atol=1e-6 * np.abs(actual).max())
+        for column, other in zip(actual.T, exact.T, strict=True):
+            assert_allclose(column, other, atol=2e-4 * max(np.abs(other).max(), 1e-3))
+        assert_allclose(reverse(x), actual, atol=1e-10)
 
 
 # all of them
@@ -369,16 +369,16 @@ def test_pressure_on_a_column_in_deep_water() -> None:
     k = (2 * np.pi / 9.0) ** 2 / G
     bare = only(build(COLUMN, water={"density": RHO, "depth": 2000.0, "gravity": G}))
     excited = model_of(bare, with_values(WaveExcitation({("column", kind): 1.0 for kind in "tz"}), Cp_t=1.4, Cp_z=0.7))
-    found = np.stack([acts(excited, np.zeros(6), np.zeros(6), (None,), wave, time)[0] for time in (0.0, 9.0 / 4)])
+    actual = np.stack([acts(excited, np.zeros(6), np.zeros(6), (None,), wave, time)[0] for time in (0.0, 9.0 / 4)])
     area = np.pi * radius**2
     diffracted = 2 / (np.pi * (k * radius) ** 2 * abs(h1vp(1, k * radius)))
     across = 0.4 * RHO * area * G * amplitude * (1 - np.exp(-k * draught)) * diffracted
     upwards = -0.3 * RHO * G * amplitude * area * np.exp(-k * draught)
-    size = np.linalg.norm(found, axis=0)
+    size = np.linalg.norm(actual, axis=0)
     assert_allclose(size[[0, 2]], [across, abs(upwards)], rtol=1e-3)
     # pressure is in phase with the elevation
     crest = np.array([float(elevation(wave, t, np.zeros((2, 1)))[0]) for t in (0.0, 9.0 / 4)])
-    assert_allclose(found[:, 2] / upwards, crest / amplitude, atol=5e-3)
+    assert_allclose(actual[:, 2] / upwards, crest / amplitude, atol=5e-3)
 
 
 @pytest.mark.slow
