@@ -86,12 +86,12 @@ def _program(fun: Callable[..., Any], arguments: Any, folder: Path, options: Map
     except TypeError:  # of an argument that is of a user's own class, or has no content that can be told
         return None
     try:
-        if (found := _read(path)) is None:
-            found = _export(fun, arguments)
-            _write(path, *found)
+        if (kept := _read(path)) is None:
+            kept = _export(fun, arguments)
+            _write(path, *kept)
     except (_NotKeptError, NotImplementedError, ValueError):
         return None  # JAX cannot export callbacks and some libraries' calls; an error of the function itself comes again
-    result, content = found
+    result, content = kept
     exported = jax.export.deserialize(bytearray(content))  # of a new program, too: its results' types are slightly others
 
     def run(*arrays: jax.Array) -> list[jax.Array]:
@@ -167,10 +167,10 @@ def _filled(described: Any, arrays: Iterator[jax.Array]) -> Any:
 def _class(name: str) -> type:
     """A class of `OWNERS` by its module and name."""
     module, _, qualname = name.partition(":")
-    found: Any = importlib.import_module(module)
+    owner: Any = importlib.import_module(module)
     for part in qualname.split("."):
-        found = getattr(found, part)
-    return found  # type: ignore[no-any-return]
+        owner = getattr(owner, part)
+    return owner  # type: ignore[no-any-return]
 
 
 def _read(path: Path) -> tuple[Any, bytes] | None:

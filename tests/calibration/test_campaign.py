@@ -167,9 +167,9 @@ def text(separator, decimal=".", top=("t", "x", "p"), units=None, ending=""):
 )
 def test_delimited_text(tmp_path, name, content):
     (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
-    table_read = read_table(tmp_path / name)
-    assert list(table_read.columns)[:3] == ["t", "x", "p"]
-    np.testing.assert_allclose(table_read[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH], atol=6e-6)
+    frame = read_table(tmp_path / name)
+    assert list(frame.columns)[:3] == ["t", "x", "p"]
+    np.testing.assert_allclose(frame[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH], atol=6e-6)
 
 
 def test_text_without_a_header_has_numbered_columns_and_a_manifest_may_count(tmp_path):
@@ -218,9 +218,9 @@ def test_matlab_73(tmp_path):
 def test_netcdf(tmp_path, engine):
     data = xr.Dataset({"x": ("t", SURGE), "p": ("t", PITCH), "draught": 20.0, "place": ("axis", [0.0, 1.0])}, {"t": T})
     data.to_netcdf(tmp_path / "a.nc", engine=engine)
-    table_read = read_table(tmp_path / "a.nc")
-    assert set(table_read.columns) == {"t", "x", "p"}
-    np.testing.assert_allclose(table_read[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH])
+    frame = read_table(tmp_path / "a.nc")
+    assert set(frame.columns) == {"t", "x", "p"}
+    np.testing.assert_allclose(frame[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH])
 
 
 OUT = (
@@ -247,9 +247,9 @@ def outb(kind, names=("Time", "PtfmSurge", "PtfmPitch"), units=("(s)", "(m)", "(
 def test_openfast(tmp_path, name, content):
     pytest.importorskip("openfast_io")
     (tmp_path / name).write_bytes(content)
-    table_read = read_table(tmp_path / name)
-    assert list(table_read.columns) == ["Time", "PtfmSurge", "PtfmPitch"]
-    np.testing.assert_allclose(table_read.to_numpy(), np.c_[T, SURGE, PITCH], atol=1e-4)
+    frame = read_table(tmp_path / name)
+    assert list(frame.columns) == ["Time", "PtfmSurge", "PtfmPitch"]
+    np.testing.assert_allclose(frame.to_numpy(), np.c_[T, SURGE, PITCH], atol=1e-4)
 
 
 def test_openfast_without_its_library_says_what_to_install(tmp_path, monkeypatch):

@@ -42,15 +42,15 @@ def waves():
 
 def test_the_record_stays_at_the_gauge_and_directions_are_those_stated() -> None:
     """The elevation at the gauge is unchanged to rounding; mean and width of the directions are those of the law."""
-    found, times = waves()
+    recorded, times = waves()
     stated = stated_directions(sea(heading=20.0, spreading=9.0), 1.0)
     assert stated is not None
-    turned = stated.turned(found, (-30.0, 10.0))
-    before, after = (jh.IrregularSea(one, WATER, 1).gauge(times, (-30.0, 10.0)) for one in (found, turned))
+    turned = stated.turned(recorded, (-30.0, 10.0))
+    before, after = (jh.IrregularSea(components, WATER, 1).gauge(times, (-30.0, 10.0)) for components in (recorded, turned))
     assert_allclose(after, before, atol=1e-9)
-    whole = np.linspace(0.0, float(found.period), 4096, endpoint=False)
+    whole = np.linspace(0.0, float(recorded.period), 4096, endpoint=False)
     away = jh.IrregularSea(turned, WATER, 1).gauge(whole, (200.0, 0.0))
-    assert np.var(away) == pytest.approx(0.5 * (np.asarray(found.amplitude) ** 2).sum(), rel=1e-9)
+    assert np.var(away) == pytest.approx(0.5 * (np.asarray(recorded.amplitude) ** 2).sum(), rel=1e-9)
     moments = circular_moments(np.asarray(turned.heading), np.ones(turned.omega.size))
     assert moments.mean == pytest.approx(math.radians(20.0), abs=0.02)
     assert moments.width == pytest.approx(math.sqrt(2 / 10), rel=0.03)
@@ -58,16 +58,16 @@ def test_the_record_stays_at_the_gauge_and_directions_are_those_stated() -> None
 
 def test_systems_share_the_waves_by_their_spectra_at_full_scale() -> None:
     """At 1:100 in the file. Long waves are the swell's, short ones the wind sea's."""
-    found, _ = waves()
-    small = [{**one, "hs": one["hs"] / 100, "tp": one["tp"] / 10} for one in (WIND_SEA, SWELL)]
+    recorded, _ = waves()
+    small = [{**system, "hs": system["hs"] / 100, "tp": system["tp"] / 10} for system in (WIND_SEA, SWELL)]
     stated, full = stated_directions(sea(systems=small), 100.0), stated_directions(sea(systems=[WIND_SEA, SWELL]), 1.0)
     assert stated is not None and full is not None
-    headings = stated.headings(found)
-    assert_allclose(headings, full.headings(found), atol=1e-9)
-    f = np.asarray(found.omega) / (2 * np.pi)
+    headings = stated.headings(recorded)
+    assert_allclose(headings, full.headings(recorded), atol=1e-9)
+    f = np.asarray(recorded.omega) / (2 * np.pi)
     assert_allclose(np.degrees(headings[(f > 0.055) & (f < 0.08)]), 30.0, atol=1e-6)
     short = f > 0.16
-    wind, swell = (np.asarray(jh.jonswap(found.omega[short], one["hs"], one["tp"])) for one in (WIND_SEA, SWELL))
+    wind, swell = (np.asarray(jh.jonswap(recorded.omega[short], system["hs"], system["tp"])) for system in (WIND_SEA, SWELL))
     share = swell / (wind + swell)
     assert np.degrees(headings[short]).mean() == pytest.approx((30.0 * share - 40.0 * (1 - share)).mean(), abs=3.0)
 
@@ -97,9 +97,9 @@ def test_a_short_crested_campaign_is_compared_and_not_fitted(tmp_path) -> None:
     options = Options(order=1, low=0.05, cutoff=0.2)
     with pytest.raises(InputError, match="1 in a sea of several headings"):
         seas_of(campaign, campaign.model.environment, Options(order=2), several_headings=True)
-    found = compare(campaign, campaign.model, options)
-    (test,), ((_, one),) = found.tests, found.seas
-    assert not one.sea.long_crested and any("drawn from what its test states (seed 0)" in note for note in found.notes)
+    comparison = compare(campaign, campaign.model, options)
+    (test,), ((_, sea),) = comparison.tests, comparison.seas
+    assert not sea.sea.long_crested and any("drawn from what its test states (seed 0)" in note for note in comparison.notes)
     surge = next(series for series in test.fit.series if series.channel == "surge")
     assert np.isfinite(surge.simulated).all() and np.std(surge.simulated) > 1e-3
-    assert float(jnp.std(one.sea.components.heading)) > 0.2
+    assert float(jnp.std(sea.sea.components.heading)) > 0.2

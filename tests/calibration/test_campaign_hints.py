@@ -31,13 +31,13 @@ def broken(campaign: Campaign, scale: float = 1.0, time: float = 1.0, **factors:
         replace(r, time=r.time * time, values={name: values * factor(name) for name, values in r.values.items()})
         for r in campaign.records
     ]
-    found = check_plausible(records, campaign.model, campaign.manifest.zero is not None, scale)
-    return [f"{one.channel}: {one.message}" for one in found if isinstance(one, CampaignFinding)]
+    findings = check_plausible(records, campaign.model, campaign.manifest.zero is not None, scale)
+    return [f"{finding.channel}: {finding.message}" for finding in findings if isinstance(finding, CampaignFinding)]
 
 
 def test_nothing_is_told_of_a_sound_campaign(campaign) -> None:
     assert broken(campaign) == [] == broken(campaign, scale=SCALE)
-    assert not [one for one in campaign.findings if isinstance(one, CampaignFinding)]
+    assert not [finding for finding in campaign.findings if isinstance(finding, CampaignFinding)]
 
 
 @pytest.mark.parametrize("off", [0.6, 0.8, 1.25, 1.7])
@@ -73,12 +73,12 @@ def test_a_model_that_is_off_is_no_mistake(campaign, off) -> None:
     ],
 )
 def test_every_way_to_be_wrong_is_told_once(campaign, changes, words) -> None:
-    found = broken(campaign, **changes)
+    hints = broken(campaign, **changes)
     if not words:
-        assert found == []
+        assert hints == []
         return
-    (one,) = found
-    assert words in one
+    (hint,) = hints
+    assert words in hint
 
 
 def test_a_campaign_that_is_refused_says_why_first(tmp_path) -> None:
@@ -112,11 +112,11 @@ def waves(change: Callable[[str, np.ndarray], np.ndarray], late: float = 0.0) ->
 def test_motions_in_waves_tell_units_and_signs() -> None:
     assert waves(lambda name, x: x) == [] == waves(lambda name, x: 1.5 * x)
     assert waves(lambda name, x: -x, late=2.5) == []  # what is out of phase says nothing
-    (one,) = waves(lambda name, x: -x if name == "pitch" else x)
-    assert one == "of the other sign than simulated in all tests in waves: pitch. An axis reversed (`channels.pitch.sign`)?"
-    (one,) = waves(lambda name, x: -x)
-    assert "(`wave_channel.sign` or its `position`)" in one
-    (one,) = waves(lambda name, x: TURN * x if name == "pitch" else x, late=2.5)  # a size says it, whatever the phase
-    assert one.startswith("pitch is 57.3 times too large") and "(`channels.pitch.unit`)" in one
-    (one,) = waves(lambda name, x: x / 1000 if name == "heave" else x)
-    assert one.startswith("heave is 1000 times too small") and "(`channels.heave.unit`)" in one
+    (hint,) = waves(lambda name, x: -x if name == "pitch" else x)
+    assert hint == "of the other sign than simulated in all tests in waves: pitch. An axis reversed (`channels.pitch.sign`)?"
+    (hint,) = waves(lambda name, x: -x)
+    assert "(`wave_channel.sign` or its `position`)" in hint
+    (hint,) = waves(lambda name, x: TURN * x if name == "pitch" else x, late=2.5)  # a size says it, whatever the phase
+    assert hint.startswith("pitch is 57.3 times too large") and "(`channels.pitch.unit`)" in hint
+    (hint,) = waves(lambda name, x: x / 1000 if name == "heave" else x)
+    assert hint.startswith("heave is 1000 times too small") and "(`channels.heave.unit`)" in hint

@@ -36,9 +36,9 @@ def test_a_period_that_changes_with_the_amplitude_is_noticed():
 
     pendulum, linear = swing(np.sin), swing(lambda x: x)
     noisy = pendulum + np.random.default_rng(1).normal(0, 2e-4, len(TIMES))
-    found = unexplained_period_change(TIMES, noisy, linear, 2e-4)
-    assert found is not None
-    assert found.large - found.small > 0.02 > abs(found.simulated_large - found.simulated_small)
+    change = unexplained_period_change(TIMES, noisy, linear, 2e-4)
+    assert change is not None
+    assert change.large - change.small > 0.02 > abs(change.simulated_large - change.simulated_small)
     assert unexplained_period_change(TIMES, noisy, pendulum, 2e-4) is None
     fit = TestFit("d", "fit", "decay", "roll", TIMES, (Series("roll", noisy, linear, 0.0, 2e-4, True),), {}, "d.csv")
     said = period_remarks([fit])
@@ -74,13 +74,13 @@ def fitted(p: float, q: float) -> Classical:
 @pytest.mark.parametrize("zeta", [0.005, 0.05, 0.2])
 def test_linear_decay_is_exact(zeta: float) -> None:
     """Of exp(-zeta w t): p = 2 zeta w, q = 0, the ratio zeta at every amplitude and on either side, however strong it is."""
-    found = classical(TIMES, linear_decay(zeta), noise=0.0)
+    analysis = classical(TIMES, linear_decay(zeta), noise=0.0)
     p = 2 * zeta * OMEGA / math.sqrt(1 - zeta**2)
-    assert found.fit.linear.value == pytest.approx(p, rel=1e-6)
-    assert abs(found.fit.quadratic.value) * 5 * 8 / 3 < 1e-6
-    assert found.fit.period == pytest.approx(PERIOD, rel=1e-6)
-    assert found.positive_fit is not None and found.positive_fit.linear.value == pytest.approx(p, rel=1e-6)
-    for pairs in (found.half_cycles, found.positive, found.negative):
+    assert analysis.fit.linear.value == pytest.approx(p, rel=1e-6)
+    assert abs(analysis.fit.quadratic.value) * 5 * 8 / 3 < 1e-6
+    assert analysis.fit.period == pytest.approx(PERIOD, rel=1e-6)
+    assert analysis.positive_fit is not None and analysis.positive_fit.linear.value == pytest.approx(p, rel=1e-6)
+    for pairs in (analysis.half_cycles, analysis.positive, analysis.negative):
         assert len(pairs.first) >= 12
         assert_allclose(pairs.damping_ratio, zeta, rtol=1e-5)
 
@@ -97,8 +97,8 @@ def test_half_cycles_are_those_of_decay_cycles_and_sides_their_mean() -> None:
     """One peak finder: the same cycles, a whole cycle's decrement being the mean of its two halves'."""
     half, positive, negative = decrements(TIMES, decay(0.01, 0.05), 1e-3)
     cycles = decay_cycles(TIMES, decay(0.01, 0.05), 1e-3)
-    for found, expected in zip((half.time, half.amplitude, half.period, half.decrement), cycles, strict=True):
-        assert_allclose(found, expected, rtol=1e-12)
+    for actual, expected in zip((half.time, half.amplitude, half.period, half.decrement), cycles, strict=True):
+        assert_allclose(actual, expected, rtol=1e-12)
     mean = 0.5 * (half.decrement[1:] + half.decrement[:-1])  # the first extreme is the trough half a period after release
     assert_allclose(negative.decrement, mean[::2], rtol=1e-12)
     assert_allclose(positive.decrement, mean[1::2], rtol=1e-12)
@@ -107,8 +107,8 @@ def test_half_cycles_are_those_of_decay_cycles_and_sides_their_mean() -> None:
 def test_sides_apart_show_a_wrong_zero() -> None:
     """0.1 m off zero: at 1 m, crests seem to lose a tenth less and troughs a tenth more; without, both lose the same."""
     for offset, order in ((0.0, 1e-3), (0.1, 0.1)):
-        found = classical(TIMES, linear_decay(0.02) + offset, noise=1e-3)
-        sides = (found.positive, found.negative)
+        analysis = classical(TIMES, linear_decay(0.02) + offset, noise=1e-3)
+        sides = (analysis.positive, analysis.negative)
         crests, troughs = (float(np.interp(-1.0, -side.amplitude, side.decrement)) for side in sides)
         assert (troughs - crests) / (2 * math.pi * 0.02) == pytest.approx(2 * offset, abs=order / 2)
 
@@ -131,15 +131,15 @@ def test_bias_grows_with_the_square_of_damping(p: float) -> None:
     whole cycles q low by 0.15 to 0.65 L^2, p high by up to 0.02 L^2 w."""
     q_bias, p_bias = [], []
     for q in (0.0375, 0.075, 0.15, 0.3):
-        found = fitted(p, q)
-        largest = found.half_cycles.decrement.max() / 2
-        q_bias.append(found.fit.quadratic.value / q - 1)
-        p_bias.append((found.fit.linear.value - p) / OMEGA)
+        fit = fitted(p, q)
+        largest = fit.half_cycles.decrement.max() / 2
+        q_bias.append(fit.fit.quadratic.value / q - 1)
+        p_bias.append((fit.fit.linear.value - p) / OMEGA)
         assert -0.06 < q_bias[-1] / largest**2 < -0.045
         assert 0 < p_bias[-1] / largest**2 < 0.005
-        assert found.positive_fit is not None
-        assert -0.65 < (found.positive_fit.quadratic.value / q - 1) / largest**2 < -0.15
-        assert 0 < (found.positive_fit.linear.value - p) / OMEGA / largest**2 < 0.02
+        assert fit.positive_fit is not None
+        assert -0.65 < (fit.positive_fit.quadratic.value / q - 1) / largest**2 < -0.15
+        assert 0 < (fit.positive_fit.linear.value - p) / OMEGA / largest**2 < 0.02
     assert np.all(np.diff(q_bias) < 0) and np.all(np.diff(p_bias) > 0)
     assert q_bias[-1] < -0.01
 
@@ -178,10 +178,10 @@ def test_equivalent_damping_dissipates_what_the_quadratic_one_does() -> None:
     fit, a, angle = fitted(0.004, 0.01).fit, 3.0, np.linspace(0, 2 * math.pi, 2001)
     velocity, omega = -a * 2 * math.pi / fit.period * np.sin(angle), 2 * math.pi / fit.period
     work = np.trapezoid((fit.linear.value + fit.quadratic.value * abs(velocity)) * velocity**2, angle / omega)
-    found, twice = equivalent_damping(fit, a, 1.0), equivalent_damping(fit, a, 2.0)
-    assert found.value * math.pi * omega * a**2 == pytest.approx(work, rel=1e-5)
-    assert found.lower < found.value < found.upper
-    assert_allclose(np.array(twice), 2 * np.array(found))
+    single, twice = equivalent_damping(fit, a, 1.0), equivalent_damping(fit, a, 2.0)
+    assert single.value * math.pi * omega * a**2 == pytest.approx(work, rel=1e-5)
+    assert single.lower < single.value < single.upper
+    assert_allclose(np.array(twice), 2 * np.array(single))
     assert_allclose([b.value for b in fit.damping(2.0)], [2 * fit.linear.value, 2 * fit.quadratic.value])
     record = classical(TIMES, decay(0.004, 0.01), noise=1e-3, inertia=2.0)
     assert record.equivalent is not None
@@ -234,16 +234,16 @@ def platform() -> jh.Model:
 @pytest.mark.slow
 def test_heave_damping_of_volturnus_by_hand() -> None:
     """Heave: 1/2 rho Cd A of three pontoons in plan and of four column bottoms; B33; mass and added mass by hand."""
-    found, half = model_damping(platform(), "heave"), 0.5 * 1025.0
+    damping, half = model_damping(platform(), "heave"), 0.5 * 1025.0
     plan, bottoms = 3 * 40.5 * 12.5, math.pi / 4 * (10.0**2 + 3 * 12.5**2)
-    assert found.per_coefficient["pontoon.Cd_z"] == pytest.approx(half * plan, rel=1e-9)
-    assert found.per_coefficient["column.Cd_z"] == pytest.approx(half * bottoms, rel=1e-9)
-    assert found.quadratic == pytest.approx(half * (4.96 * plan + 2.23 * bottoms), rel=1e-9)
-    assert found.linear == pytest.approx(1.6e5, rel=1e-6)
+    assert damping.per_coefficient["pontoon.Cd_z"] == pytest.approx(half * plan, rel=1e-9)
+    assert damping.per_coefficient["column.Cd_z"] == pytest.approx(half * bottoms, rel=1e-9)
+    assert damping.quadratic == pytest.approx(half * (4.96 * plan + 2.23 * bottoms), rel=1e-9)
+    assert damping.linear == pytest.approx(1.6e5, rel=1e-6)
     ends = 2 / 3 * math.pi * (5.0**3 + 3 * 6.25**3)
     mass = 20093000.0 + 1025.0 * (1.87 * plan * 7.0 + 0.12 * ends)
-    assert found.inertia == pytest.approx(mass, rel=1e-9)
-    assert found.rates == pytest.approx((1.6e5 / mass, found.quadratic / mass), rel=1e-6)
+    assert damping.inertia == pytest.approx(mass, rel=1e-9)
+    assert damping.rates == pytest.approx((1.6e5 / mass, damping.quadratic / mass), rel=1e-6)
 
 
 @pytest.mark.parametrize("dof", ["surge", "pitch", "yaw"])

@@ -75,8 +75,8 @@ def test_a_sound_campaign_has_nothing_odd():
 def test_a_wrong_unit_is_an_error(tmp_path, channels, where, told):
     with pytest.raises(InputError) as error:
         load_campaign(stated(tmp_path / "campaign", **channels))
-    found = {problem.where: problem.found for problem in error.value.problems}
-    assert re.search(told, found[where])
+    faults = {problem.where: problem.found for problem in error.value.problems}
+    assert re.search(told, faults[where])
 
 
 def test_a_motion_in_millimetres_is_an_error(tmp_path):
@@ -87,21 +87,23 @@ def test_a_motion_in_millimetres_is_an_error(tmp_path):
 
 def test_what_is_odd_is_a_warning(tmp_path):
     small = load_campaign(stated(tmp_path / "small", heave={"unit": "mm"}))
-    told = [one for one in small.findings if "moves by 0.00" in one.message]
-    assert {(one.test, one.severity) for one in told} == {(f"heave-{i}", "warning") for i in (1, 2, 3)}
-    units = [one for one in small.findings if one not in told]
+    told = [finding for finding in small.findings if "moves by 0.00" in finding.message]
+    assert {(finding.test, finding.severity) for finding in told} == {(f"heave-{i}", "warning") for i in (1, 2, 3)}
+    units = [finding for finding in small.findings if finding not in told]
     together = (
         "all releases in heave are as if 1000 times too small. Are millimetres and metres mixed up (`channels.heave.unit`)?"
     )
-    assert {one.message for one in units} == {"the file states m for column 'heave_m', and the manifest mm", together}
+    assert {finding.message for finding in units} == {"the file states m for column 'heave_m', and the manifest mm", together}
     noisy = load_campaign(stated(tmp_path / "noisy", noise={"surge": 3.0}))
-    assert ["noise is stated as 3 m" in one.message for one in noisy.findings] == 3 * [True]
+    assert ["noise is stated as 3 m" in finding.message for finding in noisy.findings] == 3 * [True]
 
 
 def test_a_sensor_with_a_zero_of_its_own_is_a_warning(tmp_path):
     folder = with_motion(tmp_path / "campaign", 2, lambda heave: heave + 2.5)
-    (found,) = load_campaign(folder).findings
-    assert found.channel == "heave" and found.message.startswith("decays end 2.5 m from the equilibrium of the platform file")
+    (finding,) = load_campaign(folder).findings
+    assert finding.channel == "heave" and finding.message.startswith(
+        "decays end 2.5 m from the equilibrium of the platform file"
+    )
 
 
 ROWS = "\n".join(f"{0.1 * i:.2f},{0.3 * i:.2f},{-0.01 * i:.3f}" for i in range(30)) + "\n"
@@ -138,8 +140,8 @@ def test_waves_that_cannot_stand_are_told(factor, severity):
         values={},
         wave=factor * 2.0 * np.sin(2 * np.pi * time / 10),  # 4 m high, 156 m long: 1/39
     )
-    found = check_plausible([record], campaign.model, zeroed=False)
-    assert [one.severity for one in found] == ([severity] if severity else [])
+    findings = check_plausible([record], campaign.model, zeroed=False)
+    assert [finding.severity for finding in findings] == ([severity] if severity else [])
 
 
 SHIP = """
@@ -177,9 +179,9 @@ def test_a_measured_motion_that_nothing_restores_is_told(tmp_path, restoring, to
         "pitch: {column: theta, unit: rad}}\n"
         "tests: [{id: roll, kind: decay, degree_of_freedom: roll, file: roll.csv, use: fit}]\n"
     )
-    found = [
+    warned = [
         f"{finding.channel}: {finding.message.partition('hydrostatics.')[2].partition(' out')[0]}"
         for finding in load_campaign(tmp_path).findings
         if "nothing restores" in finding.message
     ]
-    assert found == told
+    assert warned == told

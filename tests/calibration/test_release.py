@@ -44,11 +44,11 @@ def motion(*parts, noise=0.002):
 @pytest.mark.parametrize("hold", [0.15, 0.3, 0.43, 1.0, 3.3, 30.0])
 def test_a_decay_begins_at_its_release(hold, noise):
     t, x = motion(held(hold * PERIOD), DECAY, noise=noise)
-    found = free_motion(t, x)
+    free = free_motion(t, x)
     released = round(hold * PERIOD / STEP) * STEP
-    assert found.start == "release" and found.end == "record" and found.last == len(t)
-    assert found.held_until == pytest.approx(released, abs=0.03 * PERIOD) and found.level == pytest.approx(-3.4, abs=0.1)
-    assert -STEP < t[found.first] - released < 0.06 * PERIOD
+    assert free.start == "release" and free.end == "record" and free.last == len(t)
+    assert free.held_until == pytest.approx(released, abs=0.03 * PERIOD) and free.level == pytest.approx(-3.4, abs=0.1)
+    assert -STEP < t[free.first] - released < 0.06 * PERIOD
 
 
 @pytest.mark.parametrize(
@@ -61,16 +61,16 @@ def test_a_decay_begins_at_its_release(hold, noise):
 )
 def test_the_last_stillness_counts(before, start, first):
     t, x = motion(*before, DECAY)
-    found = free_motion(t, x)
-    assert found.start == start and found.end == "record"
-    assert t[found.first] == pytest.approx(first, abs=0.06 * PERIOD)
+    free = free_motion(t, x)
+    assert free.start == start and free.end == "record"
+    assert t[free.first] == pytest.approx(first, abs=0.06 * PERIOD)
 
 
 def test_a_push_from_rest_is_left_out():
     t, x = motion(held(20, 0.0), swing(90, 0.0, W))
-    found = free_motion(t, x)
-    assert found.start == "push" and found.held_until == pytest.approx(20, abs=0.1 * PERIOD)
-    assert 20 < t[found.first] < 20 + 0.35 * PERIOD
+    free = free_motion(t, x)
+    assert free.start == "push" and free.held_until == pytest.approx(20, abs=0.1 * PERIOD)
+    assert 20 < t[free.first] < 20 + 0.35 * PERIOD
 
 
 @pytest.mark.parametrize(
@@ -83,15 +83,15 @@ def test_a_push_from_rest_is_left_out():
 )
 def test_a_decay_ends_where_it_is_disturbed(after, end, last):
     t, x = motion(DECAY[:400], after)
-    found = free_motion(t, x)
-    assert (found.first, found.start, found.end) == (0, "record", end)
-    assert last - 0.8 * PERIOD < t[found.last - 1] < last + 0.1 * PERIOD
+    free = free_motion(t, x)
+    assert (free.first, free.start, free.end) == (0, "record", end)
+    assert last - 0.8 * PERIOD < t[free.last - 1] < last + 0.1 * PERIOD
 
 
 def test_a_second_push_after_rest_is_left_out():
     t, x = motion(held(10), swing(300), swing(80, 0.0, W))
-    found = free_motion(t, x)
-    assert found.start == "release" and found.end == "push" and 300 < t[found.last - 1] < 311
+    free = free_motion(t, x)
+    assert free.start == "release" and free.end == "push" and 300 < t[free.last - 1] < 311
 
 
 FREE = {
@@ -108,8 +108,8 @@ FREE = {
 @pytest.mark.parametrize("name", FREE)
 def test_a_free_decay_is_taken_whole(name):
     time, values = FREE[name]
-    found = free_motion(time, values)
-    assert (found.first, found.last, found.start, found.end) == (0, len(time), "record", "record")
+    free = free_motion(time, values)
+    assert (free.first, free.last, free.start, free.end) == (0, len(time), "record", "record")
 
 
 def campaign(folder, time, motions, wave=None, **test):
@@ -177,9 +177,9 @@ def sea(first, last, duration=400.0, period=4.0):
 )
 def test_seas_that_begin_late_or_die_down(tmp_path, bounds, transient, words):
     t, wave = sea(*bounds)
-    found, _ = campaign(tmp_path, t, 0.5 * wave + 0.01 * RNG.normal(size=len(t)), wave, kind="regular", transient=transient)
-    found = [message for message in found if "drifts" not in message]
-    assert len(found) == len(words) and all(message.startswith(word) for message, word in zip(found, words))
+    messages, _ = campaign(tmp_path, t, 0.5 * wave + 0.01 * RNG.normal(size=len(t)), wave, kind="regular", transient=transient)
+    messages = [message for message in messages if "drifts" not in message]
+    assert len(messages) == len(words) and all(message.startswith(word) for message, word in zip(messages, words))
 
 
 @pytest.mark.parametrize(("first", "last", "frozen"), [(0, 18, False), (100, 130, True), (0, 130, True)])
@@ -187,8 +187,8 @@ def test_what_is_still_before_the_waves_is_not_frozen(tmp_path, first, last, fro
     t, wave = sea(20, 500)
     x = 0.5 * wave + 0.01 * RNG.normal(size=len(t))
     x[(t >= first) & (t <= last)] = 0.0
-    found, _ = campaign(tmp_path, t, x, wave, kind="regular", transient=60.0)
-    assert any("frozen" in message for message in found) == frozen
+    messages, _ = campaign(tmp_path, t, x, wave, kind="regular", transient=60.0)
+    assert any("frozen" in message for message in messages) == frozen
 
 
 @pytest.mark.skipif(not (SHARED / "cases").is_dir(), reason=f"{SHARED / 'cases'} is not on this machine")

@@ -89,11 +89,11 @@ def test_segments_reach_the_end_of_the_record(duration: float) -> None:
     """A burst at the end is in the spectrum, and in its quadratic form alike."""
     count = round(duration / STEP)
     x = np.where(np.arange(count) > 0.97 * count, np.cos(2 * math.pi * 0.1 * STEP * np.arange(count)), 0.0)
-    found = power_spectrum(TIMES[:count], x)
+    spectrum = power_spectrum(TIMES[:count], x)
     weights = band_weights(count, STEP, 0.05, 0.15)
-    assert found.segments == len(weights.starts)
-    assert count - (weights.starts[-1] + len(weights.window)) < found.segments
-    energy = band_integral(found, 0.05, 0.15)
+    assert spectrum.segments == len(weights.starts)
+    assert count - (weights.starts[-1] + len(weights.window)) < spectrum.segments
+    energy = band_integral(spectrum, 0.05, 0.15)
     assert energy > 0 and weights.integral(x) == pytest.approx(energy, rel=1e-9)
 
 
@@ -141,27 +141,27 @@ def oscillator() -> tuple[np.ndarray, np.ndarray, float, float]:
 def test_response_of_a_linear_oscillator() -> None:
     """1/(1 - r^2 + 2 i zeta r): amplitude and phase (a lag is negative), coherence 1, from one hour."""
     force, motion, zeta, omega = oscillator()
-    found = transfer_function(TIMES, force, motion, segment=400.0)
-    near = (found.frequency > 0.02) & (found.frequency < 0.3)
-    r = 2 * math.pi * found.frequency[near] / omega
+    transfer = transfer_function(TIMES, force, motion, segment=400.0)
+    near = (transfer.frequency > 0.02) & (transfer.frequency < 0.3)
+    r = 2 * math.pi * transfer.frequency[near] / omega
     exact = 1 / (1 - r**2 + 2j * zeta * r)
-    measured = found.amplitude[near] * np.exp(1j * found.phase[near])
+    measured = transfer.amplitude[near] * np.exp(1j * transfer.phase[near])
     assert np.abs(measured - exact).max() < 0.03 * np.abs(exact).max()
-    assert found.coherence[near].min() > 0.99
-    assert np.all(found.phase[near] < 0)
+    assert transfer.coherence[near].min() > 0.99
+    assert np.all(transfer.phase[near] < 0)
 
 
 def test_noise_on_the_motion_lowers_coherence_and_not_the_estimate() -> None:
     """H1 is unbiased by noise on the motion; coherence falls to S_x/(S_x + S_n)."""
     force, motion, zeta, omega = oscillator()
     noise = np.random.default_rng(8).normal(size=TIMES.size) * 0.4
-    found = transfer_function(TIMES, force, motion + noise, segment=100.0)
-    near = (found.frequency > 0.05) & (found.frequency < 0.1)
-    r = 2 * math.pi * found.frequency[near] / omega
+    transfer = transfer_function(TIMES, force, motion + noise, segment=100.0)
+    near = (transfer.frequency > 0.05) & (transfer.frequency < 0.1)
+    r = 2 * math.pi * transfer.frequency[near] / omega
     exact = 1 / np.abs(1 - r**2 + 2j * zeta * r)
-    assert (found.amplitude[near] / exact).mean() == pytest.approx(1.0, abs=0.05)
+    assert (transfer.amplitude[near] / exact).mean() == pytest.approx(1.0, abs=0.05)
     share = exact**2 / (exact**2 + 0.4**2)  # force and noise are white, of density 2 dt and 0.4^2 2 dt
-    assert found.coherence[near].mean() == pytest.approx(share.mean(), abs=0.05)
+    assert transfer.coherence[near].mean() == pytest.approx(share.mean(), abs=0.05)
     unrelated = transfer_function(TIMES, force, noise, segment=100.0)
     assert unrelated.coherence[near].mean() < 0.06
 
@@ -170,10 +170,10 @@ def test_a_wave_that_lags() -> None:
     """Motion a quarter of a period later than the wave: phase -pi/2. No wave at all: NaN, not a number made up."""
     wave = narrow(TIMES.size, 1, 0.004)
     motion = 2.0 * np.roll(wave, 10)
-    found = transfer_function(TIMES, wave, motion)
-    peak = np.argmin(np.abs(found.frequency - 0.1))
-    assert found.amplitude[peak] == pytest.approx(2.0, rel=0.02)
-    assert found.phase[peak] == pytest.approx(-math.pi / 2, abs=0.03)
+    transfer = transfer_function(TIMES, wave, motion)
+    peak = np.argmin(np.abs(transfer.frequency - 0.1))
+    assert transfer.amplitude[peak] == pytest.approx(2.0, rel=0.02)
+    assert transfer.phase[peak] == pytest.approx(-math.pi / 2, abs=0.03)
     assert np.all(np.isnan(transfer_function(TIMES, 0 * wave, motion).amplitude))
 
 
@@ -183,24 +183,24 @@ def test_a_wave_that_lags() -> None:
 def test_statistics_of_a_sine() -> None:
     """Mean, a/sqrt(2), extremes, skewness 0, kurtosis 3/2, its period, its double amplitude."""
     x = 3.0 * np.cos(2 * math.pi * TIMES / 8.0) + 7.0
-    found = statistics(TIMES, x)
-    assert_allclose(found, [7.0, 3 / math.sqrt(2), 4.0, 10.0, 0.0, 1.5, 8.0, 6.0], rtol=1e-6, atol=1e-9)
+    result = statistics(TIMES, x)
+    assert_allclose(result, [7.0, 3 / math.sqrt(2), 4.0, 10.0, 0.0, 1.5, 8.0, 6.0], rtol=1e-6, atol=1e-9)
 
 
 def test_statistics_of_a_gaussian_process() -> None:
     """Skewness 0, kurtosis 3, a zero-crossing period of 1/frequency, and a significant double amplitude of 4.004 sigma."""
     times = STEP * np.arange(4 * 3600 * 30)
-    found = statistics(times, narrow(times.size, 2, 0.01))
-    assert abs(found.skewness) < 0.05 and found.kurtosis == pytest.approx(3.0, abs=0.2)
-    assert found.zero_crossing_period == pytest.approx(10.0, rel=0.01)
-    assert found.significant_double_amplitude == pytest.approx(4.004 * found.standard_deviation, rel=0.02)
+    result = statistics(times, narrow(times.size, 2, 0.01))
+    assert abs(result.skewness) < 0.05 and result.kurtosis == pytest.approx(3.0, abs=0.2)
+    assert result.zero_crossing_period == pytest.approx(10.0, rel=0.01)
+    assert result.significant_double_amplitude == pytest.approx(4.004 * result.standard_deviation, rel=0.02)
 
 
 def test_statistics_of_a_line() -> None:
     """No crossings: no waves; nothing varies: no shape."""
-    found = statistics(TIMES, TIMES)
-    assert found.skewness == pytest.approx(0.0, abs=1e-9) and found.kurtosis == pytest.approx(1.8, rel=1e-3)
-    assert math.isnan(found.zero_crossing_period) and math.isnan(found.significant_double_amplitude)
+    result = statistics(TIMES, TIMES)
+    assert result.skewness == pytest.approx(0.0, abs=1e-9) and result.kurtosis == pytest.approx(1.8, rel=1e-3)
+    assert math.isnan(result.zero_crossing_period) and math.isnan(result.significant_double_amplitude)
     still = statistics(TIMES, np.full(TIMES.size, 2.0))
     assert still.mean == 2.0 and still.standard_deviation == 0.0 and math.isnan(still.kurtosis)
     assert exceedance(TIMES, TIMES).amplitude.size == 0
@@ -209,15 +209,15 @@ def test_statistics_of_a_line() -> None:
 def test_exceedance_of_a_narrow_band_process() -> None:
     """Rayleigh: the share of peaks above each level within the scatter of 10,800 peaks; plotting position i/(n + 1)."""
     times = STEP * np.arange(4 * 3600 * 30)
-    found = exceedance(times, narrow(times.size, 3, 0.01))
-    n = len(found.amplitude)
+    result = exceedance(times, narrow(times.size, 3, 0.01))
+    n = len(result.amplitude)
     assert n == pytest.approx(10800, rel=0.01)
-    assert np.all(np.diff(found.amplitude) >= 0) and found.amplitude[0] > 0
-    assert_allclose(found.probability[[0, -1]], [n / (n + 1), 1 / (n + 1)])
+    assert np.all(np.diff(result.amplitude) >= 0) and result.amplitude[0] > 0
+    assert_allclose(result.probability[[0, -1]], [n / (n + 1), 1 / (n + 1)])
     # neighbouring peaks are alike: of independent ones there are as many as the band has frequencies, a fifth
-    assert np.abs(found.probability - found.rayleigh).max() < 1.6 / math.sqrt(n / 5)
-    level = np.searchsorted(found.amplitude, 2.0)
-    assert found.probability[level] == pytest.approx(math.exp(-2.0), rel=0.1)
+    assert np.abs(result.probability - result.rayleigh).max() < 1.6 / math.sqrt(n / 5)
+    level = np.searchsorted(result.amplitude, 2.0)
+    assert result.probability[level] == pytest.approx(math.exp(-2.0), rel=0.1)
 
 
 def test_peaks_of_two_waves() -> None:
@@ -234,8 +234,8 @@ def test_peaks_of_two_waves() -> None:
         ),
         20,
     )
-    found = exceedance(np.arange(x.size), x)
-    assert_allclose(np.unique(found.amplitude.round(9)), [1.0, 3.0])
+    result = exceedance(np.arange(x.size), x)
+    assert_allclose(np.unique(result.amplitude.round(9)), [1.0, 3.0])
     assert_allclose(np.unique(exceedance(np.arange(x.size), -x).amplitude.round(9)), [2.0])
 
 

@@ -128,9 +128,9 @@ def test_own_loop_against_diffrax() -> None:
         run(hull(), START, jnp.zeros(6), 0.5, 40, *options) for options in (("tsit5",), ("tsit5", "reverse"), ("diffrax",))
     )
     for name in ("position", "rate", "acceleration"):
-        one = getattr(own, name)[:41]
+        exact = getattr(own, name)[:41]
         for two in (checkpointed, other):
-            assert_allclose(one, getattr(two, name)[:41], rtol=1e-10, atol=1e-10 * float(jnp.abs(one).max()))
+            assert_allclose(exact, getattr(two, name)[:41], rtol=1e-10, atol=1e-10 * float(jnp.abs(exact).max()))
 
 
 @pytest.mark.slow
@@ -139,8 +139,8 @@ def test_output_at_recorded_times() -> None:
     times = np.sort(np.concatenate([[0.0, 40.0], np.random.default_rng(0).uniform(0, 40, 61)]))
     coarse, fine = (jh.simulate(smooth(), times, position=START, step=step) for step in (0.25, 0.05))
     for name, tolerance in (("position", 5e-6), ("rate", 2e-5), ("acceleration", 5e-4)):
-        one, other = np.asarray(getattr(coarse, name)), np.asarray(getattr(fine, name))
-        assert np.abs(one - other).max() < tolerance * np.abs(other).max()
+        rough, exact = np.asarray(getattr(coarse, name)), np.asarray(getattr(fine, name))
+        assert np.abs(rough - exact).max() < tolerance * np.abs(exact).max()
     some = np.array([0, 7, 20, 62])
     few = jh.simulate(smooth(), times[some], position=START, step=0.25)
     assert_allclose(few.position, coarse.position[some], rtol=1e-12, atol=1e-12)
@@ -166,7 +166,7 @@ def test_interpolation_is_of_sixth_order() -> None:
         curve = [np.tile(f(t)[:, None], 6) for f in (np.sin, np.cos, lambda t: -np.sin(t))]
         grid = Grid(np.zeros(()), np.asarray(step), np.asarray(59), *curve)
         at = np.linspace(0.3, 10.0, 197)
-        x, v, a = (np.asarray(one)[:, 0] for one in read(grid, at))
+        x, v, a = (np.asarray(values)[:, 0] for values in read(grid, at))
         assert np.abs(v - np.cos(at)).max() < 3 * step**5 / 720
         assert np.abs(a + np.sin(at)).max() < 3 * step**4 / 24
         errors.append(np.abs(x - np.sin(at)).max())
@@ -204,12 +204,12 @@ UNKNOWNS = (jnp.array([1.0, 1.1, 0.9, 1.2, 1.0, 1.0]), START)
 def central_differences() -> np.ndarray:
     """Of the whole simulation, of fourth order."""
     value = jax.jit(lambda flat: objective((flat[:6], flat[6:]), "forward"))
-    at, found = jnp.concatenate(UNKNOWNS), []
+    at, columns = jnp.concatenate(UNKNOWNS), []
     for i in range(12):
         h = 1e-3 * jnp.eye(12)[i] * jnp.maximum(jnp.abs(at[i]), 0.1)
         f = [float(value(at + k * h)) for k in (-2, -1, 1, 2)]
-        found.append((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * float(h[i])))
-    return np.array(found)
+        columns.append((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * float(h[i])))
+    return np.array(columns)
 
 
 @pytest.mark.slow
@@ -272,12 +272,12 @@ def test_linear_oscillator(damping: float) -> None:
     changes = {"linear_damping": {"B33": damping}} if damping else {}
     model = jh.build(platform(hydrostatics={"C33": 4e6}, added_mass={"A33": 2e6}, **changes))
     times = np.linspace(0.0, 60.0, 77)
-    found = np.asarray(jh.free_decay(model, {"heave": 3.0}, times, step=0.1)["heave"])
+    actual = np.asarray(jh.free_decay(model, {"heave": 3.0}, times, step=0.1)["heave"])
     omega = math.sqrt(4e6 / 1e7)
     zeta = damping / (2 * math.sqrt(4e6 * 1e7))
     damped = omega * math.sqrt(1 - zeta**2)
     exact = 3.0 * np.exp(-zeta * omega * times) * (np.cos(damped * times) + zeta * omega / damped * np.sin(damped * times))
-    assert_allclose(found, exact, atol=3e-8)
+    assert_allclose(actual, exact, atol=3e-8)
 
 
 def test_initial_rate_by_name() -> None:
@@ -344,14 +344,14 @@ def test_acceleration_and_its_derivatives() -> None:
     assert_allclose(one_program(accelerate)(*arguments), exact, rtol=1e-9)
     weights = rng.normal(size=6) / np.abs(exact)
     for differentiate in (jax.grad, jax.jacfwd):
-        found, expected = (
+        actual, expected = (
             one_program(differentiate(lambda *x, f=f: f(*x) @ weights, argnums=(0, 1, 2)))(*arguments)
             for f in (accelerate, plain)
         )
-        for one, other in zip(map(np.asarray, found), map(np.asarray, expected), strict=True):
-            other = 0.5 * (other + other.T) if one.shape == (6, 6) else other
-            one = 0.5 * (one + one.T) if one.shape == (6, 6) else one
-            assert_allclose(one, other, rtol=1e-7, atol=1e-9 * np.abs(other).max())
+        for derivative, other in zip(map(np.asarray, actual), map(np.asarray, expected), strict=True):
+            other = 0.5 * (other + other.T) if derivative.shape == (6, 6) else other
+            derivative = 0.5 * (derivative + derivative.T) if derivative.shape == (6, 6) else derivative
+            assert_allclose(derivative, other, rtol=1e-7, atol=1e-9 * np.abs(other).max())
 
 
 @pytest.mark.slow
@@ -420,8 +420,8 @@ def test_modes_of_one_frequency_are_of_one_motion_each() -> None:
     surge, sway, pitch, roll, heave = np.eye(6)[0], np.eye(6)[1], np.eye(6)[4], np.eye(6)[3], np.eye(6)[2]
     first, second = surge - 0.01 * pitch, sway + 0.01 * roll
     mixed = np.stack([0.8 * first + 0.6 * second, -0.6 * first + 0.8 * second, heave], axis=1)
-    found = _one_motion_each(np.array([0.01, 0.01 * (1 + 1e-9), 0.2]), mixed, np.array([1, 1, 1, 50.0, 50.0, 50.0]))
-    assert_allclose(found, np.stack([first, second, heave], axis=1), atol=1e-12)
+    shapes = _one_motion_each(np.array([0.01, 0.01 * (1 + 1e-9), 0.2]), mixed, np.array([1, 1, 1, 50.0, 50.0, 50.0]))
+    assert_allclose(shapes, np.stack([first, second, heave], axis=1), atol=1e-12)
 
 
 def test_natural_modes() -> None:

@@ -212,20 +212,20 @@ def test_energy_of_a_hysteresis_loop(amplitude: float) -> None:
 
 def test_memory_of_a_platform_held_off_its_rest() -> None:
     """`settled` is where a slow pull ends, odd, of slope 1/Y at 0; other loads are at rest, whatever the place."""
-    place, settles = np.array([-0.7, 0, 0, 0, 0, 0.0]), one_program(Hysteresis.settled)
-    settled = np.asarray(settles(hysteresis(), place))
+    position, settles = np.array([-0.7, 0, 0, 0, 0, 0.0]), one_program(Hysteresis.settled)
+    settled = np.asarray(settles(hysteresis(), position))
     slow = jnp.full(4001, -0.7 / 2000.0)
     assert_allclose(np.asarray(driven(hysteresis(), jnp.zeros(1), slow, 1.0)[1])[-1], settled, rtol=2e-3)
     assert_allclose(settled, [-(1 - math.exp(-0.7 / 0.4))], rtol=1e-12)
-    assert_allclose(settles(hysteresis(), -place), -settled, rtol=1e-12)
+    assert_allclose(settles(hysteresis(), -position), -settled, rtol=1e-12)
     slope = one_program(jax.jacfwd(lambda q: hysteresis().settled(q)))(np.zeros(6))
     assert_allclose(slope, [[1 / 0.4, 0, 0, 0, 0, 0]], rtol=1e-12)
-    memory, rest = jax.tree.map(np.asarray, (rig().settled(on_device(place)), rig().rest().memory))
-    for load, one, other in zip(rig().loads, memory, rest, strict=True):
+    memory, rest = jax.tree.map(np.asarray, (rig().settled(on_device(position)), rig().rest().memory))
+    for load, held, other in zip(rig().loads, memory, rest, strict=True):
         if isinstance(load, Hysteresis):
-            assert one.shape == other.shape and (one != other).all()
+            assert held.shape == other.shape and (held != other).all()
         else:
-            assert jax.tree.all(jax.tree.map(np.array_equal, one, other))
+            assert jax.tree.all(jax.tree.map(np.array_equal, held, other))
 
 
 def test_nothing_leaks_from_a_memory_at_rest() -> None:
@@ -258,13 +258,13 @@ def test_radiation_damping_and_added_mass() -> None:
 
     system = np.asarray(one_program(jax.jacfwd(flow))(np.zeros(3)))
     for w in (0.05, 0.3, 0.5, 0.9, 3.0):
-        found = -(system[2, :2] @ np.linalg.solve(1j * w * np.eye(2) - system[:2, :2], system[:2, 2]) + system[2, 2])
+        actual = -(system[2, :2] @ np.linalg.solve(1j * w * np.eye(2) - system[:2, :2], system[:2, 2]) + system[2, 2])
         cosine, sine = (quad(kernel, 0, 150, weight=kind, wvar=w, limit=400)[0] for kind in ("cos", "sin"))
-        assert_allclose([found.real, found.imag], [cosine, -sine], atol=1e-6 * 4e5)
+        assert_allclose([actual.real, actual.imag], [cosine, -sine], atol=1e-6 * 4e5)
         below = (0.25 - w**2) ** 2 + (0.3 * w) ** 2
         damping, mass = 4e5 * (0.3 * w) ** 2 / below, 0.3 * 4e5 * (0.25 - w**2) / below
-        assert_allclose([found.real, found.imag], [damping, w * mass], atol=1e-9 * 4e5)
-        assert found.real <= 4e5 * (1 + 1e-12) and (w != 0.5 or found.real == pytest.approx(4e5))
+        assert_allclose([actual.real, actual.imag], [damping, w * mass], atol=1e-9 * 4e5)
+        assert actual.real <= 4e5 * (1 + 1e-12) and (w != 0.5 or actual.real == pytest.approx(4e5))
 
 
 def test_radiation_memory_is_a_convolution_and_passive() -> None:
@@ -290,14 +290,14 @@ def test_eigenfrequencies_with_a_hidden_oscillator() -> None:
     flat, shape = ravel_pytree(model.rest())
     slope = jax.jit(jax.jacfwd(lambda y: ravel_pytree(model.rate(jnp.zeros(()), shape(y), jh.StillWater()))[0]))(flat)
     kept = np.array([0, 6, 12, 13])  # surge, its rate, the memory
-    found = np.linalg.eigvals(np.asarray(slope)[np.ix_(kept, kept)])
+    eigenvalues = np.linalg.eigvals(np.asarray(slope)[np.ix_(kept, kept)])
     m, w = 9e5, 2 * math.pi / 30
     k, c = m * w**2, 2 * 0.04 * m * w
     mass, damping = np.diag([M, m]), c * np.array([[1, -1], [-1, 1]])
     spring = np.array([[C + k, -k], [-k, k]])
-    zero, one = np.zeros((2, 2)), np.eye(2)
-    expected = eigvals(np.block([[zero, one], [-spring, -damping]]), np.block([[one, zero], [zero, mass]]))
-    assert_allclose(found[np.argsort(found.imag)], expected[np.argsort(expected.imag)], rtol=1e-9)
+    nothing, unit = np.zeros((2, 2)), np.eye(2)
+    expected = eigvals(np.block([[nothing, unit], [-spring, -damping]]), np.block([[unit, nothing], [nothing, mass]]))
+    assert_allclose(eigenvalues[np.argsort(eigenvalues.imag)], expected[np.argsort(expected.imag)], rtol=1e-9)
 
 
 # conservative laws
@@ -323,14 +323,14 @@ def test_nonlinear_hydrostatics_have_a_potential() -> None:
         return own + 2e9 * pitch**4 / 4 + 3e9 * pitch**6 / 6 + 1e9 * roll**4 / 4 + 2e9 * roll**6 / 6
 
     model = only(rig().with_values(values), NonlinearHydrostatics)
-    place, h = np.array([1.3, -0.2, 0.15]), 1e-5
+    position, h = np.array([1.3, -0.2, 0.15]), 1e-5
     steps = h * np.eye(3)
-    slopes = [(potential(*(place + d)) - potential(*(place - d))) / (2 * h) for d in steps]
-    found = at_rest(model, jnp.array([0, 0, *place, 0.4]))
-    assert_allclose(found, [0, 0, *(-np.array(slopes)), 0], rtol=1e-7, atol=1e-6)
+    slopes = [(potential(*(position + d)) - potential(*(position - d))) / (2 * h) for d in steps]
+    actual = at_rest(model, jnp.array([0, 0, *position, 0.4]))
+    assert_allclose(actual, [0, 0, *(-np.array(slopes)), 0], rtol=1e-7, atol=1e-6)
 
-    found = response(values, heave=2.0, pitch=0.2)
-    z, pitch, rate = found.position[:, 2], found.position[:, 4], found.rate
+    actual = response(values, heave=2.0, pitch=0.2)
+    z, pitch, rate = actual.position[:, 2], actual.position[:, 4], actual.rate
     kinetic = 0.5 * M * rate[:, 2] ** 2 + 0.5 * INERTIA * rate[:, 4] ** 2
     energy = kinetic + potential(z, 0, pitch) + LIFT * z**2 / 2 + TILT * pitch**2 / 2
     assert_allclose(energy, energy[0], rtol=1e-5)
@@ -384,11 +384,11 @@ def changed(model: jh.Model, mass: float, centre: np.ndarray, inertia: np.ndarra
     return eqx.tree_at(lambda m: m.body, model_of(model, Weight(body.mass, body.centre), kept), body)
 
 
-def assert_alike(one: jh.Model, other: jh.Model) -> None:
+def assert_alike(first: jh.Model, second: jh.Model) -> None:
     """The same rates in lively motion."""
     for q, v in zip(*sample(4), strict=True):
-        expected = rates(other, q, v)
-        assert_allclose(rates(one, q, v), expected, rtol=1e-11, atol=1e-12 * float(jnp.abs(expected).max()))
+        expected = rates(second, q, v)
+        assert_allclose(rates(first, q, v), expected, rtol=1e-11, atol=1e-12 * float(jnp.abs(expected).max()))
 
 
 def test_a_wrong_mass_is_another_body() -> None:
@@ -396,8 +396,8 @@ def test_a_wrong_mass_is_another_body() -> None:
     model = floating()
     body = model.body
     error = MassError(body.mass, body.centre)
-    found = {"mass": 7e5, "centre_x": 0.8, "centre_z": -1.1, "inertia_roll": 3e8, "inertia_pitch": -4e8, "inertia_yaw": 2e8}
-    wrong = model.with_effect(error).with_values({f"mass_properties.{name}": value for name, value in found.items()})
+    errors = {"mass": 7e5, "centre_x": 0.8, "centre_z": -1.1, "inertia_roll": 3e8, "inertia_pitch": -4e8, "inertia_yaw": 2e8}
+    wrong = model.with_effect(error).with_values({f"mass_properties.{name}": value for name, value in errors.items()})
     inertia = np.asarray(body.inertia) + np.diag([3e8, -4e8, 2e8])
     assert_alike(wrong, changed(model, 8.7e6, np.asarray(body.centre) + np.array([0.8, 0, -1.1]), inertia))
 

@@ -69,7 +69,7 @@ def coefficients(platform: Platform, member: Member) -> dict[str, float]:
 
 def cut(members: list[Member]) -> dict[tuple[float, ...], tuple[Member, float]]:
     """Members with their sizes at the lower end, by both ends, cut at their stations."""
-    found = {}
+    sections = {}
     for member in members:
         low, high = (member.a, member.b) if member.a[2] <= member.b[2] else (member.b, member.a)
         reversed_ = member.a[2] > member.b[2]
@@ -78,9 +78,12 @@ def cut(members: list[Member]) -> dict[tuple[float, ...], tuple[Member, float]]:
             if places[i + 1] == places[i]:
                 continue
             at = (1 - places[[i + 1, i]]) if reversed_ else places[[i, i + 1]]
-            ends = np.concatenate([low + one * (high - low) for one in at])
-            found[tuple(np.round(ends + KEY_OFFSET, 2) + 0.0)] = (member, float(member.sizes[i + 1 if reversed_ else i].sum()))
-    return found
+            ends = np.concatenate([low + fraction * (high - low) for fraction in at])
+            sections[tuple(np.round(ends + KEY_OFFSET, 2) + 0.0)] = (
+                member,
+                float(member.sizes[i + 1 if reversed_ else i].sum()),
+            )
+    return sections
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
@@ -103,9 +106,9 @@ def test_members_and_coefficients_come_back(trips: dict[str, RoundTrip], name: s
     for ends, (member, size) in mine.items():
         other, its = read[ends]
         assert its == pytest.approx(size, rel=SAME) and other.circular is member.circular
-        own, found = coefficients(before, member), coefficients(after, other)
+        own, returned = coefficients(before, member), coefficients(after, other)
         for key in ("Ca_t", "Cd_t") if member.column else ("Ca_t", "Ca_z", "Cd_t", "Cd_z"):
-            assert found[key] == pytest.approx(own[key], rel=SAME), (ends, key)
+            assert returned[key] == pytest.approx(own[key], rel=SAME), (ends, key)
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
@@ -138,15 +141,15 @@ def test_ends_have_the_same_added_mass_and_drag(trips: dict[str, RoundTrip], nam
 
 def upright_buoyancy(model: Model) -> tuple[np.ndarray, np.ndarray]:
     """Buoyancy (N, N m) in the reference position, and its slope."""
-    load = next(one for one in model.loads if isinstance(one, Buoyancy))
+    load = next(part for part in model.loads if isinstance(part, Buoyancy))
     weight = model.environment.density * model.environment.gravity
 
     def force(q: jax.Array) -> tuple[jax.Array, jax.Array]:
-        found = load.force(q, rotation(q[3:]), weight)
-        return found, found
+        force_at = load.force(q, rotation(q[3:]), weight)
+        return force_at, force_at
 
-    slope, found = one_program(jax.jacfwd(force, has_aux=True))(np.zeros(6))
-    return np.asarray(found), np.asarray(slope)
+    slope, force_at = one_program(jax.jacfwd(force, has_aux=True))(np.zeros(6))
+    return np.asarray(force_at), np.asarray(slope)
 
 
 def test_declared_hydrostatics_come_back(trips: dict[str, RoundTrip]) -> None:
@@ -221,10 +224,10 @@ def test_catenaries_come_back(tmp_path: Path) -> None:
         weight = kind.weight(water.density, water.gravity)
         assert read.line_types[name].weight(water.density, water.gravity) == pytest.approx(weight, rel=SAME)
         assert read.line_types[name].axial_stiffness == pytest.approx(kind.axial_stiffness, rel=SAME)
-    ends = [np.concatenate(copy) for one in mine.lines for copy in one.copies()]
-    found = [np.array([*one.anchor, *one.fairlead]) for one in read.lines]
-    assert np.array(found) == pytest.approx(np.array(ends), rel=SAME, abs=1e-8)
-    assert all([s.length for s in one.segments] == [600.0, 240.0] for one in read.lines)
+    ends = [np.concatenate(copy) for line in mine.lines for copy in line.copies()]
+    returned = [np.array([*line.anchor, *line.fairlead]) for line in read.lines]
+    assert np.array(returned) == pytest.approx(np.array(ends), rel=SAME, abs=1e-8)
+    assert all([s.length for s in line.segments] == [600.0, 240.0] for line in read.lines)
     assert "none is declared" in said(trip.deck, "line_types.rope", Treatment.APPROXIMATED)
 
 

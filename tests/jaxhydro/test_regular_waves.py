@@ -176,7 +176,7 @@ def test_without_raschii_a_message_says_what_to_install(monkeypatch) -> None:
 def test_raschii_itself_gives_the_stored_coefficients() -> None:
     pytest.importorskip("raschii")
     wave = RASCHII[0]
-    coefficients_found = stream_function(wave["height"], wave["period"], wave["depth"], 9.81, wave["order"])
-    assert coefficients_found.wavenumber == pytest.approx(wave["wavenumber"], rel=1e-9)
-    assert_allclose(coefficients_found.elevation, wave["E"], atol=1e-9)
-    assert_allclose(coefficients_found.potential, wave["B"], atol=1e-9)
+    computed = stream_function(wave["height"], wave["period"], wave["depth"], 9.81, wave["order"])
+    assert computed.wavenumber == pytest.approx(wave["wavenumber"], rel=1e-9)
+    assert_allclose(computed.elevation, wave["E"], atol=1e-9)
+    assert_allclose(computed.potential, wave["B"], atol=1e-9)

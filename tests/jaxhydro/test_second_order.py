@@ -92,7 +92,7 @@ def test_bound_waves_solve_the_equations_of_second_order(environment: Environmen
         heading=heading,
         phase=np.array([0.3, 2.0, -1.0, 0.5, 4.0, 1.0]),
     )
-    one, two = PlaneWaves.free(sea, environment), bound_waves(sea, environment)
+    free, bound = PlaneWaves.free(sea, environment), bound_waves(sea, environment)
 
     def eta(waves):
         return lambda x, t: elevation(waves, x, t)
@@ -103,19 +103,19 @@ def test_bound_waves_solve_the_equations_of_second_order(environment: Environmen
     @jax.jit
     def conditions(x, t):
         g = environment.gravity
-        slope, u = jax.grad(eta(one))(x, t), jax.grad(phi(one))(x, t)
-        phi_xx, phi_tx = jax.hessian(phi(one))(x, t), jax.jacfwd(jax.grad(phi(one)), 1)(x, t)
+        slope, u = jax.grad(eta(free))(x, t), jax.grad(phi(free))(x, t)
+        phi_xx, phi_tx = jax.hessian(phi(free))(x, t), jax.jacfwd(jax.grad(phi(free)), 1)(x, t)
         kinematic = jnp.stack(
             [
-                jax.grad(eta(two), 1)(x, t),
-                -jax.grad(phi(two))(x, t)[2],
+                jax.grad(eta(bound), 1)(x, t),
+                -jax.grad(phi(bound))(x, t)[2],
                 u[:2] @ slope[:2],
-                -eta(one)(x, t) * phi_xx[2, 2],
+                -eta(free)(x, t) * phi_xx[2, 2],
             ]
         )
-        dynamic = jnp.stack([jax.grad(phi(two), 1)(x, t), g * eta(two)(x, t), 0.5 * u @ u, eta(one)(x, t) * phi_tx[2]])
-        laplace = jnp.diag(jax.hessian(phi(two))(x + jnp.array([0.0, 0.0, -3.0]), t))
-        bottom = jax.grad(phi(two))(x.at[2].set(-environment.depth), t)
+        dynamic = jnp.stack([jax.grad(phi(bound), 1)(x, t), g * eta(bound)(x, t), 0.5 * u @ u, eta(free)(x, t) * phi_tx[2]])
+        laplace = jnp.diag(jax.hessian(phi(bound))(x + jnp.array([0.0, 0.0, -3.0]), t))
+        bottom = jax.grad(phi(bound))(x.at[2].set(-environment.depth), t)
         return kinematic, dynamic, laplace, bottom
 
     for x, y, t in np.random.default_rng(2).uniform(-100, 100, (20, 3)):
@@ -166,10 +166,10 @@ def test_printed_form_of_sharma_and_dean(environment: Environment, headings: tup
     sign = 1 if kind == "sum" else -1
     for periods in ((10.0, 12.0), (4.0, 17.0), (9.0, 8.9)):
         expected = sharma_and_dean(environment, sign, periods, headings)
-        found = pair(environment, kind, *periods, headings=headings)
+        transfer_pair = pair(environment, kind, *periods, headings=headings)
         turned = pair(environment, kind, *periods[::-1], headings=headings[::-1])
-        assert_allclose(found, expected, rtol=1e-10, atol=1e-13)
-        assert_allclose(turned, (found[0], sign * found[1]), rtol=1e-12, atol=1e-15)
+        assert_allclose(transfer_pair, expected, rtol=1e-10, atol=1e-13)
+        assert_allclose(turned, (transfer_pair[0], sign * transfer_pair[1]), rtol=1e-12, atol=1e-15)
 
 
 @pytest.mark.parametrize(("depth", "expected"), [(200.0, 0.0201284), (30.0, 0.0374631)])
@@ -239,11 +239,11 @@ def test_frequencies_are_not_negative() -> None:
     """Components in any order make the same waves."""
     sea = components([1.0, 0.5, 0.8], [0.5, 0.9, 0.7], SHALLOW, heading=[0.0, 1.0, -0.4], phase=np.arange(3.0))
     turned = jax.tree.map(lambda x: on_device(np.asarray(x)[[1, 2, 0]]), sea)
-    one, two = bound_waves(sea, SHALLOW), bound_waves(turned, SHALLOW)
-    assert np.asarray(one.omega).min() == np.asarray(two.omega).min() == 0.0
+    given, turned_waves = bound_waves(sea, SHALLOW), bound_waves(turned, SHALLOW)
+    assert np.asarray(given.omega).min() == np.asarray(turned_waves.omega).min() == 0.0
     for x, t in ((np.array([3.0, 4.0, -2.0]), 1.0), (np.array([-30.0, 14.0, -12.0]), 11.0)):
-        assert float(elevation(one, x, t)) == pytest.approx(float(elevation(two, x, t)), rel=1e-12)
-        assert float(potential(one, SHALLOW, x, t)) == pytest.approx(float(potential(two, SHALLOW, x, t)), rel=1e-12)
+        assert float(elevation(given, x, t)) == pytest.approx(float(elevation(turned_waves, x, t)), rel=1e-12)
+        assert float(potential(given, SHALLOW, x, t)) == pytest.approx(float(potential(turned_waves, SHALLOW, x, t)), rel=1e-12)
 
 
 @pytest.mark.slow
@@ -251,8 +251,8 @@ def test_a_wave_of_no_frequency_binds_nothing() -> None:
     """Exact zeros, and derivatives that are numbers."""
     sea = components([1.0, 2.0, 0.0, 1.5], 0.3 * np.arange(4), SHALLOW, first=0)
     alone = components([2.0, 0.0, 1.5], 0.3 * np.arange(1, 4), SHALLOW, first=1)
-    found = spectrum_of(sea, SHALLOW, (3.0, 4.0))
-    assert_allclose(found, spectrum_of(alone, SHALLOW, (3.0, 4.0)), rtol=1e-14, atol=1e-17)
+    actual = spectrum_of(sea, SHALLOW, (3.0, 4.0))
+    assert_allclose(actual, spectrum_of(alone, SHALLOW, (3.0, 4.0)), rtol=1e-14, atol=1e-17)
 
     def loss(sea):
         waves = bound_waves(sea, SHALLOW)
@@ -273,9 +273,9 @@ def field(x, environment: Environment):
 
     def reduce(omega, vector, elevation, potential):
         k, c, s = profile(PlaneWaves(omega, vector, elevation, potential), environment, x[2])
-        there = jnp.exp(-1j * (x[:2] @ vector))
-        velocity = vector * (potential * c * there)
-        return (elevation * there).sum(), velocity.sum(axis=1), (1j * k * potential * s * there).sum()
+        turn = jnp.exp(-1j * (x[:2] @ vector))
+        velocity = vector * (potential * c * turn)
+        return (elevation * turn).sum(), velocity.sum(axis=1), (1j * k * potential * s * turn).sum()
 
     return reduce
 
@@ -288,9 +288,9 @@ def test_differences_above_the_highest_bind_nothing() -> None:
     sea = random_sea(SHALLOW, 23)
     highest = 9 / float(sea.period)
     every, some = bound_waves(sea, SHALLOW), bound_waves(sea, SHALLOW, highest_difference=highest)
-    there = np.asarray(every.elevation) != 0
-    difference = np.arange(len(there)) >= 23 * 24 // 2
-    expected = there & ~(difference & (np.asarray(every.omega) > 9.5 * 2 * np.pi / float(sea.period)))
+    binding = np.asarray(every.elevation) != 0
+    difference = np.arange(len(binding)) >= 23 * 24 // 2
+    expected = binding & ~(difference & (np.asarray(every.omega) > 9.5 * 2 * np.pi / float(sea.period)))
     assert_array_equal(np.asarray(some.elevation) != 0, expected)
     whole, part = (np.asarray(spectrum_of(sea, SHALLOW, (3.0, 4.0), BOTH, to)) for to in (None, highest))
     sums = np.asarray(spectrum_of(sea, SHALLOW, (3.0, 4.0), ("sum",)))
@@ -309,13 +309,13 @@ def test_fold_is_the_sum_over_all_pairs(n: int, kinds: tuple) -> None:
     folded = jax.jit(lambda sea, x: sum_over_pairs(sea, SHALLOW, field(x, SHALLOW), kinds))
     direct = jax.jit(lambda waves, x: field(x, SHALLOW)(waves.omega, waves.vector, waves.elevation, waves.potential))
     for x in (np.array([3.0, -7.0, -2.0]), np.array([-50.0, 20.0, -15.0])):
-        found = tuple(map(np.asarray, folded(sea, x)))
+        actual = tuple(map(np.asarray, folded(sea, x)))
         for t in (0.0, 13.7):
             turn = np.exp(1j * pairs.omega * t)
             moved = PlaneWaves(pairs.omega, pairs.vector, pairs.elevation * turn, pairs.potential * turn)
             expected = map(np.asarray, direct(moved, x))
-            spin = np.exp(2j * np.pi * np.arange(found[0].size) * t / period)
-            for a, b in zip(found, expected, strict=True):
+            spin = np.exp(2j * np.pi * np.arange(actual[0].size) * t / period)
+            for a, b in zip(actual, expected, strict=True):
                 assert a.shape[0] == 2 * (sea.first + n - 1) + 1
                 assert_allclose((a.T @ spin).real, b.real, rtol=1e-9, atol=1e-11)
 
@@ -324,8 +324,8 @@ def test_elevation_spectrum_is_the_elevation() -> None:
     """At a position, set-down included, jitted and over several seas at once."""
     seas = [random_sea(SHALLOW, seed=seed) for seed in (1, 2, 3)]
     stacked = jax.tree.map(lambda *x: np.stack(x), *seas)
-    found = np.asarray(jax.jit(jax.vmap(lambda sea: elevation_spectrum(sea, SHALLOW, (12.0, -5.0))))(stacked))
-    for sea, spectrum in zip(seas, found, strict=True):
+    actual = np.asarray(jax.jit(jax.vmap(lambda sea: elevation_spectrum(sea, SHALLOW, (12.0, -5.0))))(stacked))
+    for sea, spectrum in zip(seas, actual, strict=True):
         pairs = bound_waves(sea, SHALLOW)
         assert abs(spectrum[0].imag) < 1e-15 and spectrum[0].real < 0
         for t in (0.0, 31.4):
@@ -394,10 +394,10 @@ def seastate(name: str) -> dict[str, np.ndarray]:
 def test_against_openfast(case: str, x: int) -> None:
     """Second order less first: elevation, velocity, acceleration and pressure, which has no set-down there."""
     omega, amplitude, phase, _ = np.loadtxt(OPENFAST / f"{case}_components.csv", delimiter=",", skiprows=1, ndmin=2).T
-    one, two = seastate(f"{case}_o1_x{x}"), seastate(f"{case}_o2_x{x}")
+    first_order, second = seastate(f"{case}_o1_x{x}"), seastate(f"{case}_o2_x{x}")
     sea = components(amplitude, omega, DEEP, phase=np.radians(phase))
     waves = jax.tree.map(np.asarray, bound_waves(sea, DEEP, set_down=False))
-    spin = np.exp(1j * (waves.omega * two["Time"][:, None] - x * waves.vector[0]))
+    spin = np.exp(1j * (waves.omega * second["Time"][:, None] - x * waves.vector[0]))
     expected = {"Wave1Elv2": (spin @ waves.elevation).real}
     for j, z in enumerate((0.0, -5.0, -10.0, -20.0, -50.0), 1):
         k, c, s = profile(waves, DEEP, z, np)
@@ -407,8 +407,8 @@ def test_against_openfast(case: str, x: int) -> None:
         expected[f"FAcc{j}zi"] = (1j * waves.omega * w).real.sum(axis=1)
         expected[f"FDynP{j}"] = 1025.0 * (spin * (waves.omega * waves.potential * c)).real.sum(axis=1)
     for channel, ours in expected.items():
-        theirs = two[channel] - one[channel]
-        rounding = 1e-5 * np.abs(two[channel]).max()  # six digits are printed of the sum of both orders
+        theirs = second[channel] - first_order[channel]
+        rounding = 1e-5 * np.abs(second[channel]).max()  # six digits are printed of the sum of both orders
         assert np.abs(ours - theirs).max() < 1e-4 * np.abs(theirs).max() + rounding, channel
         if case == "comp":  # a single wave's potential is nothing in 200 m
             assert float(ours @ theirs / (ours @ ours)) == pytest.approx(1.0, abs=1e-4), channel

@@ -48,20 +48,20 @@ def test_cases_are_states_by_headings_by_seeds_in_order() -> None:
 
 
 def test_a_grid_is_all_heights_with_all_periods_and_what_never_happens_is_left_out() -> None:
-    made, known = plan_of(
+    made, remarks = plan_of(
         validate(Sweep, SWEEP | {"scatter": {"hs": [1, 2], "tp": [5, 6, 7], "probability": [[1, 0, 1], [2, 2, 0]]}}, "sweep"),
         "s",
     )
-    assert known == ["2 cases of probability 0 are left out"]
-    found = [(case.hs, case.tp, case.probability) for case in made.cases]
-    assert found == [(1, 5, 1 / 6), (1, 7, 1 / 6), (2, 5, 1 / 3), (2, 6, 1 / 3)]
+    assert remarks == ["2 cases of probability 0 are left out"]
+    states = [(case.hs, case.tp, case.probability) for case in made.cases]
+    assert states == [(1, 5, 1 / 6), (1, 7, 1 / 6), (2, 5, 1 / 3), (2, 6, 1 / 3)]
 
 
 def test_what_is_in_a_table_twice_is_run_once() -> None:
     rows = [{"hs": hs, "tp": 8, "probability": share} for hs, share in ((1, 1), (2, 3), (1, 2), (2, 0), (1, 4))]
-    made, known = plan_of(validate(Sweep, SWEEP | {"scatter": rows}, "sweep"), "s")
+    made, remarks = plan_of(validate(Sweep, SWEEP | {"scatter": rows}, "sweep"), "s")
     assert [(case.hs, case.probability) for case in made.cases] == [(1, 0.7), (2, 0.3)]
-    (note,) = known
+    (note,) = remarks
     assert note == "Hs 1 m, Tp 8 s and 1 more are in the table more than once: run once, and its probabilities add up"
 
 
@@ -160,8 +160,10 @@ def test_cases_that_differ_are_named_by_their_key() -> None:
     rows = [{"hs": hs, "tp": 7, "probability": share} for hs, share in ((1, 4), (2, 3), (3, 2), (4, 1))]
 
     def apart(**changes) -> tuple[str, str, str]:
-        (found,) = plan(scatter=rows, headings=[0, 30]).differences(plan(**({"scatter": rows, "headings": [0, 30]} | changes)))
-        return found
+        (difference,) = plan(scatter=rows, headings=[0, 30]).differences(
+            plan(**({"scatter": rows, "headings": [0, 30]} | changes))
+        )
+        return difference
 
     assert apart(scatter=rows[:3]) == ("scatter", "4 sea states", "3")
     before, now = (f"heading {heading} deg, with 50.0000% of the life" for heading in (30, 40))
@@ -182,9 +184,9 @@ def test_the_share_of_a_spectrum_in_the_band_is_that_of_its_seas() -> None:
     """By the components of a sea, and in closed form for Pierson and Moskowitz: m0 below f goes with exp(-5/4 (fp / f)^4)."""
     seas = [{"hs": 0.5, "tp": 3}, {"hs": 3, "tp": 9, "gamma": 2}, {"hs": 3, "tp": 9, "gamma": 5}]
     made = plan(scatter=seas, headings=[0, 90], cutoff=0.3, duration=3600.0)
-    found = shares_in_band(made)
-    assert found.shape == (6,) and (found[::2] == found[1::2]).all()
-    for case, share in zip(made.cases[::2], found[::2]):
+    shares = shares_in_band(made)
+    assert shares.shape == (6,) and (shares[::2] == shares[1::2]).all()
+    for case, share in zip(made.cases[::2], shares[::2]):
         waves = jh.spectrum_components(
             lambda w, case=case: jh.jonswap(w, case.hs, case.tp, case.gamma),
             3600.0,
@@ -300,22 +302,22 @@ def test_a_life_is_its_runs_weighed_by_their_probability() -> None:
     rng = np.random.default_rng(0)
     p, deviation, most = np.array([0.5, 0.3, 0.2]), rng.uniform(1, 2, (3, 4)), rng.uniform(3, 9, (3, 4))
     ranges = rng.uniform(1, 2, (3, 4, 2))
-    found = lifetime(p, deviation, deviation, -most, most, ranges, np.array([3.0, 10.0]))
-    assert found.mean == pytest.approx(p @ deviation.mean(axis=1))
-    assert found.standard_deviation == pytest.approx(math.sqrt(p @ (deviation**2).mean(axis=1)))
-    assert found.ranges[1] == pytest.approx((p @ (ranges[..., 1] ** 10).mean(axis=1)) ** 0.1)
-    assert (found.maximum, found.minimum) == (most.max(), -most.max())
-    assert found.maximum_of_seed == pytest.approx(most.max(axis=0).mean())
-    assert found.maximum_spread == pytest.approx(most.max(axis=0).std(ddof=1))
+    life = lifetime(p, deviation, deviation, -most, most, ranges, np.array([3.0, 10.0]))
+    assert life.mean == pytest.approx(p @ deviation.mean(axis=1))
+    assert life.standard_deviation == pytest.approx(math.sqrt(p @ (deviation**2).mean(axis=1)))
+    assert life.ranges[1] == pytest.approx((p @ (ranges[..., 1] ** 10).mean(axis=1)) ** 0.1)
+    assert (life.maximum, life.minimum) == (most.max(), -most.max())
+    assert life.maximum_of_seed == pytest.approx(most.max(axis=0).mean())
+    assert life.maximum_spread == pytest.approx(most.max(axis=0).std(ddof=1))
     each = np.sqrt(p @ deviation**2)
-    assert found.standard_deviation_spread == pytest.approx(each.std(ddof=1))
+    assert life.standard_deviation_spread == pytest.approx(each.std(ddof=1))
 
 
 def test_failed_runs_are_left_out_of_a_life() -> None:
     values = np.array([[1.0, 3.0], [np.nan, 5.0], [np.nan, np.nan]])
     assert weighted(np.array([0.5, 0.25, 0.25]), values) == pytest.approx((0.5 * 2 + 0.25 * 5) / 0.75)
-    found = lifetime(np.array([0.5, 0.25, 0.25]), values, values, values, values, values[..., None], np.array([3.0]))
-    assert found.maximum == 5 and found.minimum == 1 and math.isfinite(found.ranges[0])
+    life = lifetime(np.array([0.5, 0.25, 0.25]), values, values, values, values, values[..., None], np.array([3.0]))
+    assert life.maximum == 5 and life.minimum == 1 and math.isfinite(life.ranges[0])
     nothing = lifetime(np.ones(1), *(np.full((1, 2), np.nan),) * 4, np.full((1, 2, 1), np.nan), np.array([3.0]))
     assert all(np.isnan(value).all() for value in nothing)
 
@@ -330,12 +332,12 @@ def test_the_scatter_diagram_has_a_mark_per_sea_state() -> None:
     hs, tp = np.array([1.0, 1.0, 2.0]), np.array([5.0, 5.0, 8.0])
     figure = scatter_figure(hs, tp, np.array([0.2, 0.6, 0.2]), np.array([1.0, 2.0, np.nan]), "surge", "t")
     marks = figure.axes[0].collections
-    assert sorted(np.concatenate([one.get_array() for one in marks if one.get_array() is not None]).data) == pytest.approx(
+    assert sorted(np.concatenate([mark.get_array() for mark in marks if mark.get_array() is not None]).data) == pytest.approx(
         [math.sqrt((0.2 * 1 + 0.6 * 4) / 0.8)]
     )
     assert len(marks) == 2 and {text.get_text() for text in figure.axes[0].texts} == {"80 %", "20 %"}
-    one = scatter_figure(hs[2:], tp[2:], np.array([1.0]), np.array([1.0]), "surge", "t")
-    assert [text.get_text() for text in one.axes[0].texts] == ["100 %"]
+    figure = scatter_figure(hs[2:], tp[2:], np.array([1.0]), np.array([1.0]), "surge", "t")
+    assert [text.get_text() for text in figure.axes[0].texts] == ["100 %"]
 
 
 def test_the_exceedance_figure_has_a_line_per_seed_and_one_of_all_on_both_sides() -> None:

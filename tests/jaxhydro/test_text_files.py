@@ -62,9 +62,9 @@ def refused(folder, lines, name="a.txt"):
     ],
 )
 def test_a_header_of_another_delimiter(tmp_path, delimiter, top, names):
-    found = read(tmp_path, top + rows(delimiter))
-    assert list(found.columns) == names
-    np.testing.assert_allclose(found.to_numpy(), NUMBERS, atol=5e-3)
+    frame = read(tmp_path, top + rows(delimiter))
+    assert list(frame.columns) == names
+    np.testing.assert_allclose(frame.to_numpy(), NUMBERS, atol=5e-3)
 
 
 @pytest.mark.parametrize("delimiter", DELIMITERS, ids=["comma", "semicolon", "tab", "spaces"])
@@ -80,8 +80,8 @@ def test_a_header_of_another_delimiter(tmp_path, delimiter, top, names):
     ],
 )
 def test_sentences_after_the_last_row(tmp_path, delimiter, bottom):
-    found = read(tmp_path, ["Time", *rows(delimiter), *bottom][1:])
-    np.testing.assert_allclose(found.to_numpy(), NUMBERS, atol=5e-3)
+    frame = read(tmp_path, ["Time", *rows(delimiter), *bottom][1:])
+    np.testing.assert_allclose(frame.to_numpy(), NUMBERS, atol=5e-3)
 
 
 @pytest.mark.parametrize(
@@ -124,8 +124,8 @@ def test_no_damaged_row_is_passed_over(tmp_path, delimiter, at, damage):
 
 
 def test_numbers_as_fortran_and_typesetters_write_them(tmp_path):
-    found = read(tmp_path, ["t x", *(f"{i}.0 \u22120.{i + 10}D+01" for i in range(30))])
-    np.testing.assert_allclose(found["x"], [-(0.1 + 0.01 * i) * 10 for i in range(30)])
+    frame = read(tmp_path, ["t x", *(f"{i}.0 \u22120.{i + 10}D+01" for i in range(30))])
+    np.testing.assert_allclose(frame["x"], [-(0.1 + 0.01 * i) * 10 for i in range(30)])
 
 
 # --------------------------------------------------------------------------------------------------------------- times
@@ -156,17 +156,17 @@ def stamps(form, step=0.5, start=datetime.datetime(2024, 1, 31, 10, 22, 33)):
     ],
 )
 def test_times_become_seconds(tmp_path, times, first):
-    found = read(tmp_path, ["t,x", *(f"{time},{i}" for i, time in enumerate(times))], "a.csv")
+    frame = read(tmp_path, ["t,x", *(f"{time},{i}" for i, time in enumerate(times))], "a.csv")
     step = 1.0 if first == 360000.5 else 0.5
-    np.testing.assert_allclose(found["t"], first + step * np.arange(COUNT), atol=1e-6)
-    assert found.attrs["times"] == ["t"]
+    np.testing.assert_allclose(frame["t"], first + step * np.arange(COUNT), atol=1e-6)
+    assert frame.attrs["times"] == ["t"]
 
 
 @pytest.mark.parametrize("header", [["date time x"], ["t x"], []])
 def test_a_date_and_a_time_of_day_between_spaces(tmp_path, header):
-    found = read(tmp_path, header + [f"{time} {i}" for i, time in enumerate(stamps("{0:%Y-%m-%d %H:%M:%S.%f}"))])
-    time = found.iloc[:, -2].to_numpy(float)
-    assert time[-1] - time[0] == pytest.approx(0.5 * (COUNT - 1)) and found.iloc[-1, -1] == COUNT - 1
+    frame = read(tmp_path, header + [f"{time} {i}" for i, time in enumerate(stamps("{0:%Y-%m-%d %H:%M:%S.%f}"))])
+    time = frame.iloc[:, -2].to_numpy(float)
+    assert time[-1] - time[0] == pytest.approx(0.5 * (COUNT - 1)) and frame.iloc[-1, -1] == COUNT - 1
 
 
 @pytest.mark.parametrize(
@@ -240,9 +240,9 @@ def test_hdf5_that_is_no_netcdf(tmp_path):
 def test_netcdf_times_with_a_date_are_seconds_from_the_first(tmp_path):
     moments = np.datetime64("2024-01-31T10:22:33", "ns") + (NUMBERS[:, 0] * 1e9).astype("timedelta64[ns]")
     xr.Dataset({"x": ("t", NUMBERS[:, 1])}, {"t": moments}).to_netcdf(tmp_path / "a.nc")
-    found = read_table(tmp_path / "a.nc")
-    np.testing.assert_allclose(found["t"], NUMBERS[:, 0])
-    assert found.attrs["times"] == ["t"]
+    frame = read_table(tmp_path / "a.nc")
+    np.testing.assert_allclose(frame["t"], NUMBERS[:, 0])
+    assert frame.attrs["times"] == ["t"]
 
 
 # ----------------------------------------------------------------------------------------------------------- workbooks
@@ -264,17 +264,17 @@ HEADER = [["Run 3"], ["Operator", "J. Doe"], [], ["Time", "Surge", "Pitch"], ["s
 
 
 def test_a_workbook(tmp_path):
-    found = read_table(workbook(tmp_path / "a.xlsx", [["Notes"], ["the rope slipped"]], HEADER + NUMBERS.tolist()))
-    assert list(found.columns) == ["Time", "Surge", "Pitch"] and found.attrs["units"]["Pitch"] == "deg"
-    np.testing.assert_allclose(found.to_numpy(), NUMBERS, rtol=1e-14)
+    frame = read_table(workbook(tmp_path / "a.xlsx", [["Notes"], ["the rope slipped"]], HEADER + NUMBERS.tolist()))
+    assert list(frame.columns) == ["Time", "Surge", "Pitch"] and frame.attrs["units"]["Pitch"] == "deg"
+    np.testing.assert_allclose(frame.to_numpy(), NUMBERS, rtol=1e-14)
 
 
 def test_moments_in_a_workbook(tmp_path):
     start = datetime.datetime(2024, 1, 31, 10, 22, 33)
     moments = [start + datetime.timedelta(seconds=0.5 * i) for i in range(COUNT)]
     for cells in (moments, [moment.time() for moment in moments]):
-        found = read_table(workbook(tmp_path / "a.xlsx", [["t", "x"], *([cell, i] for i, cell in enumerate(cells))]))
-        np.testing.assert_allclose(found["t"] - found["t"][0], NUMBERS[:, 0], atol=1e-3)
+        frame = read_table(workbook(tmp_path / "a.xlsx", [["t", "x"], *([cell, i] for i, cell in enumerate(cells))]))
+        np.testing.assert_allclose(frame["t"] - frame["t"][0], NUMBERS[:, 0], atol=1e-3)
 
 
 def test_workbooks_that_are_refused(tmp_path):

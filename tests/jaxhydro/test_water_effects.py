@@ -167,12 +167,12 @@ def test_a_moved_sea_is_one_of_other_phases(order: int, heading: float) -> None:
     expected = expected.direct()
     time = jnp.asarray(23.5)
     *exact, slow = water(expected, time, points)
-    for sea_form, tolerance in ((prepared, 1e-5), (sea.direct(), 1e-12)):
-        *actual, drifting = water(sea_form, time, points, load)
+    for unmoved, tolerance in ((prepared, 1e-5), (sea.direct(), 1e-12)):
+        *actual, drifting = water(unmoved, time, points, load)
         for part, other in zip(actual, exact, strict=True):
             assert_allclose(part, other, atol=5 * tolerance * np.abs(other).max())
-        assert sea_form is prepared or np.abs(np.asarray(drifting) - np.asarray(slow)).max() < 1e-9
-    same = zip(*(jax.tree.leaves(sea_form) for sea_form in (through(WaveGaugePosition(), prepared), prepared)), strict=True)
+        assert unmoved is prepared or np.abs(np.asarray(drifting) - np.asarray(slow)).max() < 1e-9
+    same = zip(*(jax.tree.leaves(which) for which in (through(WaveGaugePosition(), prepared), prepared)), strict=True)
     assert all(np.array_equal(a, b) for a, b in same)
     assert isinstance(load.through(jh.StillWater()), jh.StillWater)
 
@@ -277,7 +277,7 @@ def test_a_prepared_sea_costs_nothing_more_where_nobody_drifts() -> None:
         run = jax.jit(lambda leaves: model.rate(jnp.asarray(12.5), model.rest(), jax.tree.unflatten(shape, leaves)).velocity)
         return run.lower(leaves).compile().cost_analysis()["flops"], np.asarray(run(leaves))
 
-    bare, whole = (cost(plain, evaluated) for evaluated in (dataclasses.replace(sea, envelope=None), sea))
+    bare, whole = (cost(plain, which) for which in (dataclasses.replace(sea, envelope=None), sea))
     assert bare[0] == whole[0] and (bare[1] == whole[1]).all()
     assert cost(plain.with_effect(WaveDrift.neutral(("surge", "heave", "pitch"))), sea)[0] > whole[0]
 
@@ -310,8 +310,8 @@ def test_a_prepared_sea_comes_back() -> None:
     load = with_values(WaveReflection(delay=8.1), coefficient=0.25)
     points = jnp.array([[-9.0, 21.0], [4.0, 7.0], [-12.0, -1.0]])
     met, exact = load.through(prepared), load.through(sea.direct())
-    for reflected, other in zip(*(water(reflected, jnp.asarray(40.5), points) for reflected in (met, exact)), strict=True):
-        assert_allclose(reflected, other, atol=2e-5 * np.abs(other).max())
+    for part, other in zip(*(water(which, jnp.asarray(40.5), points) for which in (met, exact)), strict=True):
+        assert_allclose(part, other, atol=2e-5 * np.abs(other).max())
     for time, reflected in ((17.75, met), (10.125, met), (40.5, WaveReflection(delay=8.1).through(prepared))):
         actual, expected = (water(which, jnp.asarray(time), points) for which in (reflected, prepared))
         assert_allclose(actual[0], expected[0], rtol=1e-13)
@@ -327,7 +327,7 @@ def test_what_the_gauge_saw_come_back() -> None:
     assert_allclose(elevation(met, time, here[:2]), elevation(sea, time, here[:2]), atol=1e-12)
     back, now, then = flow(met, time, here), flow(sea, time, here), flow(sea, time - 8.1, here)
     assert_allclose(back.pressure, now.pressure, rtol=1e-12)
-    velocity, sent, returned = (along @ np.asarray(flow_of.velocity)[:2] for flow_of in (back, now, then))
+    velocity, sent, returned = (along @ np.asarray(water_flow.velocity)[:2] for water_flow in (back, now, then))
     assert_allclose(velocity, sent - 0.5 * returned, rtol=1e-9)
 
 

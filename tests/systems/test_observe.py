@@ -83,8 +83,8 @@ def test_readings_of_a_point_and_of_a_late_clock(body: Model, motion: Grid) -> N
         return np.concatenate([q[:3] + np.asarray(rotation(jnp.asarray(q[3:]))) @ arm, q[3:]])
 
     for in_waves, late in ((True, LAG), (False, 0.0)):
-        there = np.asarray(motion.at(times - late)[0])
-        expected = np.stack([tracked(q) - tracked(np.asarray(origin)) for q in there])
+        delayed = np.asarray(motion.at(times - late)[0])
+        expected = np.stack([tracked(q) - tracked(np.asarray(origin)) for q in delayed])
         assert_allclose(observe(sensed, motion, times, origin, in_waves=in_waves), expected, atol=1e-12)
     assert_allclose(observe(body, motion, times, in_waves=True), motion.at(times)[0], atol=0)
 
@@ -96,9 +96,9 @@ def test_the_motion_behind_a_reading(body: Model) -> None:
     for _ in range(5):
         position, rate = (jnp.asarray(rng.normal(size=6)) for _ in range(2))
         reading, reading_rate = jax.jvp(lambda q: reading_at(sensed, q), (position,), (rate,))
-        found = motion_behind(sensed, reading, reading_rate)
-        assert_allclose(found[0], position, atol=1e-12)
-        assert_allclose(found[1], rate, atol=1e-12)
+        behind = motion_behind(sensed, reading, reading_rate)
+        assert_allclose(behind[0], position, atol=1e-12)
+        assert_allclose(behind[1], rate, atol=1e-12)
 
 
 def manifest(tests: list[dict]) -> dict:
@@ -183,7 +183,7 @@ def test_a_static_test_is_held_where_the_tracked_point_says(body: Model) -> None
     reading = np.asarray(reading_at(sensed, jnp.asarray(truth)))
     record = SimpleNamespace(degree_of_freedom="surge", values={name: reading[[DOFS.index(name)]] for name in CHANNELS})
     offsets = set_up_offsets(sensed, [record], parameter_space(sensed, ["linear_damping.B33"]), from_rest=False)
-    assert_allclose(eqx.filter_jit(lambda one: one.readings(one.space.start))(offsets)[0], reading, atol=1e-9)
+    assert_allclose(eqx.filter_jit(lambda residual: residual.readings(residual.space.start))(offsets)[0], reading, atol=1e-9)
 
 
 @pytest.mark.slow
@@ -194,7 +194,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     setup = set_up_study(campaign, OPTIONS)
     study, started = setup.study, np.asarray(setup.study.space.start)
     fits = SimpleNamespace(study=study, setup=setup)
-    kinds = {one.effect: one for one in reversed(setup.candidates)}
+    kinds = {candidate.effect: candidate for candidate in reversed(setup.candidates)}
     assert {
         "sensor_reference",
         "sensor_lag",
@@ -208,10 +208,10 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
         "amplitude_dependent_drag",
     } <= set(kinds)
 
-    def calibration(place: Point, model: Model, labels: tuple[str, ...]) -> Calibration:
+    def calibration(point: Point, model: Model, labels: tuple[str, ...]) -> Calibration:
         values = {label: float(model.values[label]) for label in labels}
         parameters = {k: Estimate(k, v, 0.0, "-", "of the test", 0.0, False, True) for k, v in values.items()}
-        tests = tuple(fitted_tests(campaign, fits, place))
+        tests = tuple(fitted_tests(campaign, fits, point))
         return Calibration(campaign.manifest.name, model, parameters, tests, True, 1, 1.0, (), (), campaign.platform.name, None)
 
     null = Point(started, np.zeros((0, 0)))
@@ -229,9 +229,9 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     for effect in kinds:
         # hysteresis that yields at a small displacement is too fast for the time step: with another shape, then
         places = (moved([effect], *by) for by in (((4.0, 4.0),) if effect == "hysteresis" else ((4.0, 0.0), (1.0, 0.0))))
-        place = next(at for at in places if all(np.isfinite(row).all() for row in study.motions(at)))
-        step_of[effect] = place.x - started
-        after = fitted_tests(campaign, fits, place)
+        point = next(at for at in places if all(np.isfinite(row).all() for row in study.motions(at)))
+        step_of[effect] = point.x - started
+        after = fitted_tests(campaign, fits, point)
         pairs = [pair for test, first in zip(after, before.tests) for pair in zip(test.series, first.series)]
         if not any(abs(series.relative / other.relative - 1) > 0.01 for series, other in pairs):
             still.add(effect)
@@ -239,14 +239,16 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     assert still <= {"amplitude_dependent_drag", "current"}
     for i in range(GROUPS):  # programs of many models take long to compile
         some = list(kinds)[i::GROUPS]
-        place = Point(started + 0.5 * sum(step_of[effect] for effect in some), null.own)
+        point = Point(started + 0.5 * sum(step_of[effect] for effect in some), null.own)
         values = {
-            label: study.value(label, place.x) for effect in some for label in (*kinds[effect].labels, *kinds[effect].choices)
+            label: study.value(label, point.x) for effect in some for label in (*kinds[effect].labels, *kinds[effect].choices)
         }
         model = with_effects(setup.baseline, values).with_values(values)
-        after = calibration(place, model, (*damping, *values))
-        found = fake_diagnosis(baseline=before, augmented=after, seas=OPTIONS, campaign=campaign.manifest.name, predictions=())
-        write_diagnosis(found, tmp_path / str(i), figures=False)
+        after = calibration(point, model, (*damping, *values))
+        diagnosis = fake_diagnosis(
+            baseline=before, augmented=after, seas=OPTIONS, campaign=campaign.manifest.name, predictions=()
+        )
+        write_diagnosis(diagnosis, tmp_path / str(i), figures=False)
         said = json.loads((tmp_path / str(i) / "diagnosis.json").read_text())["augmented"]["error"]
         used = apply_calibration(tmp_path / str(i) / "diagnosis.json", campaign.model, campaign.platform.name)
         assert set(values) <= set(used.values)
