@@ -4,7 +4,7 @@ They are separated once per record, in NumPy; the results go into jitted code.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -49,8 +49,14 @@ def record_components(
     elevation: Float[np.ndarray, " t"],
     environment: Environment,
     *,
+    position: tuple[float, float] = (0.0, 0.0),
+    heading: float = 0.0,
+    low: float,
+    cutoff: float,
+    order: int = 2,
     tolerance: float = TOLERANCE,
-    **options: Any,
+    kinds: tuple[Kind, ...] = KINDS,
+    highest_difference: float | None = None,
 ) -> Components:
     """First-order waves of a measured elevation; an error where they do not reproduce it.
 
@@ -58,9 +64,14 @@ def record_components(
         times: Sample times (s), (t,), even.
         elevation: Elevation (m), (t,).
         environment: Water depth and gravity.
+        position: Position of the gauge (m, earth axes).
+        heading: Direction that the waves travel to (rad).
+        low: Lowest frequency (Hz).
+        cutoff: Highest frequency (Hz).
+        order: 1 or 2, as in `separated_record`.
         tolerance: Largest accepted mismatch (-).
-        **options: Those of `separated_record`: `low` and `cutoff` (Hz), and `position`, `heading`, `order`, `kinds`,
-            `highest_difference`.
+        kinds: As in `separated_record`.
+        highest_difference: As in `separated_record`.
 
     Returns:
         The components.
@@ -68,11 +79,23 @@ def record_components(
     Raises:
         ValueError: As `separated_record`, or the mismatch is above `tolerance`.
     """
-    separation = separated_record(times, elevation, environment, tolerance=tolerance, **options)
+    separation = separated_record(
+        times,
+        elevation,
+        environment,
+        position=position,
+        heading=heading,
+        low=low,
+        cutoff=cutoff,
+        order=order,
+        tolerance=tolerance,
+        kinds=kinds,
+        highest_difference=highest_difference,
+    )
     if separation.mismatch > tolerance:
         raise ValueError(
             f"first and second order miss {separation.mismatch:.2%} of the record after {separation.rounds} rounds, expected "
-            f"below {tolerance:.2%}. Take a cutoff below {options['cutoff']:g} Hz, a larger tolerance, or order 1"
+            f"below {tolerance:.2%}. Take a cutoff below {cutoff:g} Hz, a larger tolerance, or order 1"
         )
     return separation.waves
 
