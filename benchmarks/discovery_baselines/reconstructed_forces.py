@@ -15,7 +15,7 @@ from calibration.discovery.diagnosis_fits import calibration_of
 from calibration.discovery.latent_force.recover_force import accelerations, forces_of, resampled_tests
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest
 from calibration.discovery.search import Search
-from calibration.discovery.set_up import set_up_study
+from calibration.discovery.study_set_up import set_up_study
 from calibration.residuals.wave_options import options_of
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import equilibrium, linearised

@@ -15,7 +15,7 @@ import pandas as pd
 
 import jaxhydro as jh
 from benchmarks.evidence.openfast_runs import FOLDER, platform
-from jaxhydro.waves import SupportSea, pair_sums, preparation, second_order
+from jaxhydro.waves import SupportSea, pair_sums, second_order, shared_preparation
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.flow import Cylinders, Flow
 
@@ -113,14 +113,14 @@ def _without_set_down() -> Iterator[None]:
 
     Such pairs are pointed to waves that bind nothing.
     """
-    tiles, spectrum = pair_sums._tiles, preparation._spectrum.__wrapped__
+    tiles, spectrum = pair_sums._tiles, shared_preparation._spectrum.__wrapped__
 
     def fewer(n: int, *others: Any) -> Any:
         pairs = tiles(n, *others)
         return eqx.tree_at(lambda t: t.i, pairs, jnp.where((pairs.sign < 0) & (pairs.harmonic == 0), n, pairs.i))
 
     anew = eqx.filter_jit(lambda *a: spectrum(*a))  # nothing that was traced with all pairs
-    with mock.patch.object(pair_sums, "_tiles", fewer), mock.patch.object(preparation, "_spectrum", anew):
+    with mock.patch.object(pair_sums, "_tiles", fewer), mock.patch.object(shared_preparation, "_spectrum", anew):
         yield
 
 

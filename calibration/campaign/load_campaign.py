@@ -15,7 +15,7 @@ from calibration.campaign.checks import check_records
 from calibration.campaign.finding import Finding
 from calibration.campaign.manifest import Manifest, platform_source, read_manifest
 from calibration.campaign.manifest_sections import IN_WAVES
-from calibration.campaign.plausible import CampaignFinding, check_plausible, restoring_findings
+from calibration.campaign.record_plausibility import CampaignFinding, check_plausible, restoring_findings
 from calibration.campaign.records import Record, records_of
 from calibration.campaign.series import read_series
 from calibration.campaign.table_findings import built_in_findings, check_tables, platform_findings

@@ -12,7 +12,7 @@ from calibration.campaign.runs import Run
 from calibration.discovery.frequency_bands import FourierRows
 from calibration.discovery.linearisations import MotionSeries
 from calibration.discovery.measured_series import gather_decay_series, gather_sea
-from calibration.discovery.residuals import SeaRecord
+from calibration.discovery.residual_slopes import SeaRecord
 from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace

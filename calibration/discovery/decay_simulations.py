@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.discovery.residuals import Frame, decay_residual, decay_slopes
+from calibration.discovery.residual_slopes import Frame, decay_residual, decay_slopes
 from calibration.residuals.decays import DecayData, DecayProblem, padded
 
 

@@ -21,7 +21,7 @@ from calibration.discovery.residual_anatomy import anatomy
 from calibration.discovery.search import Search
 from calibration.discovery.selection.joint_search import JointSearch
 from calibration.discovery.selection.verification import Verification
-from calibration.discovery.set_up import set_up_study
+from calibration.discovery.study_set_up import set_up_study
 from calibration.fitting.progress import Progress
 from calibration.residuals.measured_seas import NO_ZERO
 from calibration.residuals.wave_options import Options, options_of

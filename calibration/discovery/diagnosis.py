@@ -79,7 +79,7 @@ class Score:
 
 
 @dataclass(frozen=True, eq=False)
-class Finding:
+class MotionResidual:
     """Residual of one motion of one test.
 
     Attributes:
@@ -156,8 +156,8 @@ class Diagnosis:
     effects: tuple[Effect, ...]
     rejected: tuple[Rejected, ...]
     scores: tuple[Score, ...]
-    anatomy_before: tuple[Finding, ...]
-    anatomy_after: tuple[Finding, ...]
+    anatomy_before: tuple[MotionResidual, ...]
+    anatomy_after: tuple[MotionResidual, ...]
     unexplained_share: float
     signature: str
     next_test: str

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.discovery.diagnosis import Diagnosis, Finding, Outcome
+from calibration.discovery.diagnosis import Diagnosis, MotionResidual, Outcome
 from calibration.discovery.diagnosis_fits import calibration_of, estimates_of, values_as_estimates
 from calibration.discovery.doubts import doubted_effects, doubts_of
 from calibration.discovery.effect_fits import EffectFits
@@ -86,7 +86,7 @@ def conclude(
     )
 
 
-def unexplained_motions(fits: EffectFits, residuals: Sequence[Finding]) -> list[Finding]:
+def unexplained_motions(fits: EffectFits, residuals: Sequence[MotionResidual]) -> list[MotionResidual]:
     """Residuals of fitted tests that exceed both noise and the usual error of a model, the largest first.
 
     Only motions that a test is about count.

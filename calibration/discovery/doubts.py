@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from calibration.discovery.acceptance import Verdict, worsening
-from calibration.discovery.diagnosis import Finding
+from calibration.discovery.diagnosis import MotionResidual
 from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import capitalised, effect_in_words
@@ -30,7 +30,7 @@ MAX_HELD_OUT_RATIO = 1.05
 MAX_COEFFICIENT_RATIO = 3.0  # of a coefficient to its declared value, or the inverse
 
 
-def doubts_of(fits: EffectFits, state: FitState, fitted: Calibration, more: Sequence[Finding]) -> list[str]:
+def doubts_of(fits: EffectFits, state: FitState, fitted: Calibration, more: Sequence[MotionResidual]) -> list[str]:
     """Notes on doubts about the final fit.
 
     Args:
@@ -128,7 +128,7 @@ def held_out_error_rose(before: float | None, after: float | None) -> bool:
     return before is not None and after is not None and after > MAX_HELD_OUT_RATIO * before
 
 
-def unexplained_note(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
+def unexplained_note(chosen: Sequence[Candidate], more: Sequence[MotionResidual]) -> str:
     """Note that the effects found do not make the model follow the records."""
     names, worst = [effect_in_words(candidate.effect, candidate.dof) for candidate in chosen], more[0]
     added = names[0] if len(names) == 1 else f"all {len(names)} effects"

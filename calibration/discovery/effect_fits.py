@@ -17,7 +17,7 @@ from calibration.discovery.expected_residuals import expected_rows
 from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.held_out_blocks import HeldOutBlocks
 from calibration.discovery.linearisations import Linearisation, Point, Prior
-from calibration.discovery.set_up import StudySetup
+from calibration.discovery.study_set_up import StudySetup
 from calibration.fitting.decay_fit import prepare_fit, run_fit
 from calibration.residuals.decays import first_guess
 

@@ -22,7 +22,7 @@ from jaxtyping import Array, Float
 
 from calibration.discovery.frequency_bands import FourierRows
 from calibration.discovery.linearisations import Point
-from calibration.discovery.residuals import SeaRecord
+from calibration.discovery.residual_slopes import SeaRecord
 from calibration.discovery.study import Study
 from jaxhydro.dynamics.model import State
 from jaxhydro.exported_programs import exported_jit

@@ -1,4 +1,4 @@
-"""Data classes: point, linearisation, prior, measured motion with its noise floor."""
+"""Data classes of a diagnosis: parameter point, linearised residual, prior, measured motion with its noise floor."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

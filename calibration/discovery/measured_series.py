@@ -8,7 +8,7 @@ import numpy as np
 from calibration.campaign.records import Record
 from calibration.discovery.frequency_bands import Bands, FourierRows, band_powers, cut_into_bands, step_of
 from calibration.discovery.linearisations import RELATIVE_FLOOR, MotionSeries
-from calibration.discovery.residuals import SeaRecord
+from calibration.discovery.residual_slopes import SeaRecord
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import DecayProblem, gather_decays
 from calibration.residuals.moving_channels import moving_channels

@@ -13,7 +13,7 @@ import numpy as np
 from calibration.discovery.decay_simulations import DecaySimulations
 from calibration.discovery.frequency_bands import FourierRows
 from calibration.discovery.linearisations import Linearisation, Point, SeaSelection
-from calibration.discovery.residuals import Frame, SeaRecord, decay_residual, decay_slopes, sea_residuals
+from calibration.discovery.residual_slopes import Frame, SeaRecord, decay_residual, decay_slopes, sea_residuals
 from calibration.discovery.sea_slopes import COMPARED_AT_ONCE, Accelerations, sea_slopes
 from calibration.fitting.cores import cores
 from jaxhydro.interrupts import stoppable_threads

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from calibration.campaign.manifest_sections import WAVE
-from calibration.discovery.diagnosis import Finding
+from calibration.discovery.diagnosis import MotionResidual
 from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.fit_state import FitState
 from calibration.formatting import listed, number
@@ -16,7 +16,7 @@ from calibration.formatting import listed, number
 MIN_RESIDUAL_OVER_NOISE = 1.3  # rms; a smaller residual is at the noise
 
 
-def anatomy(fits: EffectFits, state: FitState) -> tuple[Finding, ...]:
+def anatomy(fits: EffectFits, state: FitState) -> tuple[MotionResidual, ...]:
     """Residual of every motion and test, in numbers and words."""
     study = fits.study
     noise = np.array([[series.noise] for series in study.series])
@@ -33,7 +33,9 @@ def anatomy(fits: EffectFits, state: FitState) -> tuple[Finding, ...]:
             (float(a), float(b), float(math.sqrt(s))) for a, b, s, f in zip(series.low, series.high, squares, freedom) if f > 0
         )
         words = _words(ratio, rms / series.noise, bands)
-        findings.append(Finding(series.test, series.use, series.channel, rms, series.noise, rms / series.spread, bands, words))
+        findings.append(
+            MotionResidual(series.test, series.use, series.channel, rms, series.noise, rms / series.spread, bands, words)
+        )
     return tuple(findings)
 
 

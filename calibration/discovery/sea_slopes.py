@@ -20,7 +20,7 @@ import numpy as np
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float, Int
 
-from calibration.discovery.residuals import Frame, SeaRecord
+from calibration.discovery.residual_slopes import Frame, SeaRecord
 from calibration.fitting.cores import cores
 from jaxhydro.dynamics.integrate import EXTRA_STEPS, MOTION_SIZE, grid_of, rate_of
 from jaxhydro.dynamics.model import Model

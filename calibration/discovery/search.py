@@ -12,7 +12,7 @@ from calibration.discovery.effect_fits import EffectFits, ReportStage
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.refusal import Refusal
-from calibration.discovery.set_up import StudySetup
+from calibration.discovery.study_set_up import StudySetup
 
 
 class AcceptedEffect(NamedTuple):

@@ -1,4 +1,4 @@
-"""All records of a campaign and one model: residuals and linearisations at any point."""
+"""Records of a campaign and a model with all candidates at neutral values: residuals and linearisations."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from calibration.discovery.decay_simulations import DecaySimulations
 from calibration.discovery.frequency_bands import FourierRows, step_of
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, SeaSelection
 from calibration.discovery.record_simulations import KnownSlopes, LinearisationJob, RecordSimulations
-from calibration.discovery.residuals import SeaRecord
+from calibration.discovery.residual_slopes import SeaRecord
 from calibration.parameters.space import ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
 from calibration.residuals.decays import DecayProblem

@@ -1,4 +1,4 @@
-"""Part of a fit: the residuals of one kind, their errors and their weights."""
+"""Base class of the residuals of one kind in a fit, with their errors and weights."""
 
 import abc
 from typing import ClassVar, Literal, NamedTuple

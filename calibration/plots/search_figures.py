@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
-from calibration.discovery.diagnosis import Diagnosis, Finding, Score
+from calibration.discovery.diagnosis import Diagnosis, MotionResidual, Score
 from calibration.discovery.reported_forces import LatentForce
 from calibration.formatting import PREFIXES
 from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WAVE, WIDTH, header, stack
@@ -96,7 +96,7 @@ def _scores_axes(ax: Axes, labels: list[str], highest: float) -> None:
     ax.grid(visible=False, axis="y")
 
 
-def anatomy_figure(before: tuple[Finding, ...], after: tuple[Finding, ...]) -> Figure:
+def anatomy_figure(before: tuple[MotionResidual, ...], after: tuple[MotionResidual, ...]) -> Figure:
     """Residual over noise in frequency bands, a row for every motion of every test, before beside after."""
     rows = sorted(before, key=lambda finding: (finding.use != "fit", before.index(finding)))
     after_by_motion = {(finding.test, finding.channel): finding for finding in after}
@@ -133,7 +133,7 @@ def anatomy_figure(before: tuple[Finding, ...], after: tuple[Finding, ...]) -> F
     return figure
 
 
-def _strip(ax: Axes, row: int, finding: Finding | None, low: float, norm: LogNorm) -> None:
+def _strip(ax: Axes, row: int, finding: MotionResidual | None, low: float, norm: LogNorm) -> None:
     """Draw the bands of one motion, from the beginning of the axis on."""
     if finding is None or not finding.bands:
         ax.axhspan(row - 0.5, row + 0.5, color="#eef0f2", lw=0)
@@ -144,7 +144,7 @@ def _strip(ax: Axes, row: int, finding: Finding | None, low: float, norm: LogNor
             ax.fill_between([max(begin, low), end], row - 0.46, row + 0.46, color=colour, lw=0)
 
 
-def _row_name(finding: Finding) -> str:
+def _row_name(finding: MotionResidual) -> str:
     name = finding.test if finding.channel in finding.test else f"{finding.test}, {finding.channel}"
     return name if len(name) <= 20 else f"{name[:19]}…"
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.discovery.diagnosis import Diagnosis, Finding, Prediction, Rejected, Score
+from calibration.discovery.diagnosis import Diagnosis, MotionResidual, Prediction, Rejected, Score
 from calibration.discovery.refusal import RefusalKind
 from calibration.discovery.reported_effects import Effect
 from calibration.discovery.reported_forces import LatentForce
@@ -211,7 +211,7 @@ def _prediction(prediction: Prediction) -> PredictedMotion:
     )
 
 
-def _residual(finding: Finding) -> Residual:
+def _residual(finding: MotionResidual) -> Residual:
     return Residual(
         test=finding.test,
         use=finding.use,

@@ -1,4 +1,4 @@
-"""What loads ask for together: tables of the sea's forces, and changes of the forces of strips and ends."""
+"""Force tables that loads need from the sea, and strip forces that loads replace."""
 
 from collections.abc import Callable, Sequence
 from functools import partial

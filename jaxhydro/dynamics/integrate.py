@@ -19,6 +19,7 @@ from jaxhydro.waves.integration_clock import Clock
 from jaxhydro.waves.sea import AbstractSea
 
 Method = Literal["tsit5", "rk4", "ab4", "diffrax"]
+RUNGE_KUTTA: dict[str, Callable[[], runge_kutta.Scheme]] = {"rk4": lambda: runge_kutta.RK4, "tsit5": runge_kutta.tsit5}
 Adjoint = Literal["forward", "reverse"]
 Kernel = Literal["off", "gpu", "interpreted"]
 EXTRA_STEPS = 2  # steps, so that differences at the last one are central
@@ -83,7 +84,7 @@ def _by_loop(
     """A scheme as one of this package's own loops: positions and body velocities at the ends of the steps."""
     y, unravel = ravel_pytree(state)
     loop = adams_bashforth if method == "ab4" else runge_kutta
-    options: dict[str, Any] = {} if method == "ab4" else {"scheme": runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()}
+    options: dict[str, Any] = {} if method == "ab4" else {"scheme": RUNGE_KUTTA[method]()}
     run: Any = loop.forward if adjoint == "forward" else loop.backward
     if adjoint == "forward":
         options["shown"] = MOTION_SIZE
@@ -200,7 +201,7 @@ def clock(method: Method, start: float, step: float, count: int) -> Clock:
 
         nodes = (0.0, *map(float, diffrax.Tsit5.tableau.c))
     else:
-        nodes = (runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()).nodes
+        nodes = RUNGE_KUTTA[method]().nodes
     return Clock(start, step, count + EXTRA_STEPS + 1, tuple(sorted({node for node in nodes if node < 1.0})))
 
 

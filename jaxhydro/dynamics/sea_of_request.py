@@ -21,7 +21,7 @@ from jaxhydro.waves.directional_spectrum import (
 from jaxhydro.waves.irregular import spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.recorded_waves import separated_record
-from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz, white_noise
+from jaxhydro.waves.spectra import SPECTRA, peak_enhancement, white_noise
 from jaxhydro.waves.spreading import circular_moments
 from jaxhydro.waves.wave_errors import BandError, BreakingError
 
@@ -156,7 +156,7 @@ def _from_spectrum(
             return directional.density(omega)
         if asked.spectrum == "white":
             return white_noise(omega, hs, *band)
-        return jonswap(omega, hs, tp, gamma) if asked.spectrum == "jonswap" else pierson_moskowitz(omega, hs, tp)
+        return SPECTRA[asked.spectrum](omega, hs, tp, gamma)
 
     try:
         drawn: Any = {"low": low, "cutoff": cutoff, "seed": asked.seed, "amplitudes": asked.amplitudes}

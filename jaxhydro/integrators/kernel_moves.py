@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend import core
 
-from jaxhydro.integrators.equations import apply, type_of
+from jaxhydro.integrators.jaxpr_evaluation import apply, type_of
 
 MOVES = {"broadcast_in_dim", "reshape", "squeeze", "expand_dims", "concatenate", "slice", "transpose", "rev", "stack", "split"}
 MOVES |= {"unstack", "gather", "dynamic_slice", "scatter", "pad", "tile"}

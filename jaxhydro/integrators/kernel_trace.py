@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend import core
 
-from jaxhydro.integrators.equations import apply, type_of, walk
+from jaxhydro.integrators.jaxpr_evaluation import apply, type_of, walk
 from jaxhydro.integrators.kernel_moves import MOVES, moved, sources
 from jaxhydro.integrators.kernel_plan import Plan, Value
 

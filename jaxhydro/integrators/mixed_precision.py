@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 from jax.extend import core
 
-from jaxhydro.integrators.equations import apply, type_of, walk
+from jaxhydro.integrators.jaxpr_evaluation import apply, type_of, walk
 from jaxhydro.integrators.linearised_rate import Rate
 
 Precision = Literal["double", "mixed"]

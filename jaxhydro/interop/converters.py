@@ -1,4 +1,4 @@
-"""Readers of other programs' models by the ending of their files."""
+"""Readers of `jaxhydro convert`, by the ending of the file."""
 
 from collections.abc import Callable
 from importlib import import_module

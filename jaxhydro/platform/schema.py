@@ -17,10 +17,10 @@ from jaxhydro.platform.coefficients_schema import Coefficients
 from jaxhydro.platform.computed_tables_schema import Drift, Excitation, Hydrostatics, Radiation
 from jaxhydro.platform.current_schema import SteadyCurrent
 from jaxhydro.platform.guided_mass_schema import GuidedMass, twice_named
+from jaxhydro.platform.heading_coverage import OtherWaves, other_waves
 from jaxhydro.platform.liquid_column_damper_schema import LiquidColumnDamper
 from jaxhydro.platform.matrix_schema import AddedMass, LinearDamping, QuadraticDamping, Stiffness
 from jaxhydro.platform.mooring_schema import LinearSprings, NoMooring, StiffnessMatrix
-from jaxhydro.platform.other_waves import OtherWaves, other_waves
 from jaxhydro.platform.shared_coefficients import owners, sharing_faults
 from jaxhydro.platform.tension_table_schema import TensionTableMooring
 from jaxhydro.platform.tuned_mass_damper_schema import TunedMassDamper

@@ -17,8 +17,8 @@ from jaxhydro.dynamics.time_steps import steps_in
 from jaxhydro.integrators.mixed_precision import Precision
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.pair_sums import elevation_spectrum
-from jaxhydro.waves.preparation import Preparation
 from jaxhydro.waves.sea_state import state_of
+from jaxhydro.waves.shared_preparation import Preparation
 
 
 class SeaMotion(NamedTuple):

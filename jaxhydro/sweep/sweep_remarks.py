@@ -17,7 +17,7 @@ from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.sea_states import State, named
 from jaxhydro.waves.irregular import harmonics, repeat_period
 from jaxhydro.waves.sea_limits import LIMITS
-from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
+from jaxhydro.waves.spectra import SPECTRA, peak_enhancement
 
 STATES_IN_MEMORY = 256  # sea states whose spectra are in memory
 
@@ -41,12 +41,10 @@ def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float
     for i in range(0, len(states), STATES_IN_MEMORY):
         chunk = states[i : i + STATES_IN_MEMORY]
         hs, tp = (jnp.array([state[k] for state in chunk])[:, None] for k in (0, 1))
-        if plan.spectrum == "jonswap":
-            asked = jnp.array([[np.nan if state[2] is None else state[2]] for state in chunk])
-            density = jonswap(omega, hs, tp, jnp.where(jnp.isnan(asked), peak_enhancement(hs, tp), asked))
-        else:
-            density = pierson_moskowitz(omega, hs, tp)
+        asked = jnp.array([[np.nan if state[2] is None else state[2]] for state in chunk])
+        gamma = jnp.where(jnp.isnan(asked), peak_enhancement(hs, tp), asked)
         shape = plan.spectrum.replace("_", "-")
+        density = SPECTRA[shape](omega, hs, tp, gamma)
         for state, sea in zip(chunk, np.asarray(density)):
             swell = state.systems(0.0, shape, None)[1:]
             yield state, np.asarray(omega), sum((np.asarray(system.density(omega)) for system in swell), sea)

@@ -19,10 +19,10 @@ from jaxhydro.environment import Environment
 from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.irregular import spectrum_components
-from jaxhydro.waves.spectra import jonswap, pierson_moskowitz, tabulated
+from jaxhydro.waves.spectra import SPECTRA, tabulated
 from jaxhydro.waves.spreading import equal_energy_shares, spread_angle
 
-SHAPES = ("jonswap", "pierson-moskowitz")
+SHAPES = tuple(SPECTRA)  # names of spectra that a system may have
 
 
 class AbstractDirectionalSpectrum(abc.ABC):
@@ -82,9 +82,7 @@ class WaveSystem:
 
     def density(self, omega: Float[Array, " w"]) -> Float[Array, " w"]:
         """Spectral density (m² s/rad) at frequencies (rad/s), (w,)."""
-        if self.spectrum == "jonswap":
-            return jonswap(omega, self.hs, self.tp, self.gamma)
-        return pierson_moskowitz(omega, self.hs, self.tp)
+        return SPECTRA[self.spectrum](omega, self.hs, self.tp, self.gamma)
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from jaxhydro.waves.excitation import AnyExcitation
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.integration_clock import Clock
 from jaxhydro.waves.pair_sums import elevation_spectrum
-from jaxhydro.waves.preparation import Preparation
 from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY, AbstractSea, Stretching, direction, growth
 from jaxhydro.waves.second_order import KINDS, Kind, bound_waves
+from jaxhydro.waves.shared_preparation import Preparation
 from jaxhydro.waves.support_sea import SupportSea
 from jaxhydro.waves.supports import Box, supports
 from jaxhydro.waves.wave_sea import WaveSea

@@ -5,6 +5,7 @@ Arguments are checked unless they are traced: under jit or grad nothing can be r
 """
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import jax
@@ -117,6 +118,11 @@ def _peaked(omega, peak_period, gamma):
 
 
 _default_enhancement = peak_enhancement  # the argument of `jonswap` has the function's name
+
+SPECTRA: dict[str, Callable[..., Float[Array, "..."]]] = {  # by name: S of omega, Hs, Tp and gamma
+    "jonswap": jonswap,
+    "pierson-moskowitz": lambda omega, hs, tp, gamma: pierson_moskowitz(omega, hs, tp),
+}
 
 
 def white_noise(omega: Float[Array, "..."], significant_height: Scalar, low: Scalar, high: Scalar) -> Float[Array, "..."]:

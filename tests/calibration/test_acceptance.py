@@ -23,7 +23,7 @@ from calibration.discovery.acceptance import (
 )
 from calibration.discovery.broyden_fit import fit
 from calibration.discovery.checkpoint import _packed, _rebuilt
-from calibration.discovery.diagnosis import Finding, Rejected, Score
+from calibration.discovery.diagnosis import MotionResidual, Rejected, Score
 from calibration.discovery.diagnosis_conclusion import unexplained_motions
 from calibration.discovery.doubts import (
     doubted_effects,
@@ -100,8 +100,8 @@ def test_a_test_is_about_what_moves_in_it():
     study = study_of(*of_decay, *of_sea)
     assert list(study.main) == [True, False, False, True, False, True, False, True]
 
-    def left_of(channel: str) -> list[Finding]:
-        return [Finding("sea", "fit", channel, 0.1, 0.001, 0.9, (), "")]
+    def left_of(channel: str) -> list[MotionResidual]:
+        return [MotionResidual("sea", "fit", channel, 0.1, 0.001, 0.9, (), "")]
 
     under_way = SimpleNamespace(study=study)
     assert unexplained_motions(under_way, left_of("surge")) and unexplained_motions(under_way, left_of("heave"))  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ import pytest
 from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.motion_hints import motion_hints
-from calibration.campaign.plausible import CampaignFinding, check_plausible
+from calibration.campaign.record_plausibility import CampaignFinding, check_plausible
 
 TURN, SCALE = 180 / math.pi, 50.0
 ANGLES = ("roll", "pitch", "yaw")

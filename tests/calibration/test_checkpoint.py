@@ -26,7 +26,7 @@ from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.linearisations import Linearisation, Point
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 from calibration.discovery.search import AcceptedEffect, ListedVariant, Search
-from calibration.discovery.set_up import set_up_study
+from calibration.discovery.study_set_up import set_up_study
 from calibration.residuals.wave_options import Options
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro import fingerprint as fingerprints

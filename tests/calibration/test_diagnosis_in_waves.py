@@ -24,10 +24,10 @@ from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis_conclusion import conclude
 from calibration.discovery.effects.phase_shift_start import PHASE_SPACING, phase_shift_start
 from calibration.discovery.linearisations import Point
-from calibration.discovery.residuals import Frame
+from calibration.discovery.residual_slopes import Frame
 from calibration.discovery.sea_slopes import sea_slopes
 from calibration.discovery.search import Search
-from calibration.discovery.set_up import set_up_study
+from calibration.discovery.study_set_up import set_up_study
 from calibration.report.write_report import write_report
 from calibration.residuals.wave_options import options_of
 from calibration.results.applied_calibration import apply_calibration

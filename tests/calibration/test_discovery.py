@@ -28,7 +28,7 @@ from calibration.discovery.mass_properties_check import with_mass_properties
 from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE
 from calibration.discovery.search import Search, SearchRecord
-from calibration.discovery.set_up import set_up_study
+from calibration.discovery.study_set_up import set_up_study
 from calibration.residuals.wave_options import Options
 from calibration.results.refusal_sentences import describe_refusal
 from jaxhydro.dynamics.statics import equilibrium, linearised

@@ -16,9 +16,9 @@ from calibration.discovery.eliminated_least_squares import deviances, row_weight
 from calibration.discovery.expected_residuals import expected_over_floor, force_spectrum, impedance
 from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.linearisations import MotionSeries, Prior
-from calibration.discovery.residuals import SeaRecord
-from calibration.discovery.set_up import COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_WIDTH, StudySetup, prior_width_of
+from calibration.discovery.residual_slopes import SeaRecord
 from calibration.discovery.study import Study
+from calibration.discovery.study_set_up import COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_WIDTH, StudySetup, prior_width_of
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import Scaled
 from jaxhydro.waves.integration_clock import Clock

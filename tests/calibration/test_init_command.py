@@ -14,7 +14,7 @@ from test_cli import run
 from calibration.campaign.load_campaign import Campaign, load_campaign
 from calibration.campaign.manifest import read_manifest
 from calibration.commands.init_command import init_campaign
-from calibration.discovery.set_up import set_up_study
+from calibration.discovery.study_set_up import set_up_study
 from calibration.new_campaign.column_names import channel_of, motion_in
 from calibration.new_campaign.draft_text import yaml_scalar
 from calibration.residuals.measured_seas import Options

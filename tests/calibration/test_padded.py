@@ -10,8 +10,8 @@ from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.discovery.held_out_blocks import study_in_blocks
 from calibration.discovery.linearisations import Point
-from calibration.discovery.residuals import decay_residual
-from calibration.discovery.set_up import set_up_study
+from calibration.discovery.residual_slopes import decay_residual
+from calibration.discovery.study_set_up import set_up_study
 from calibration.fitting.decay_fit import prepare_fit
 from calibration.residuals.decays import DecayProblem, first_guess
 from calibration.residuals.padded_sizes import padded_size

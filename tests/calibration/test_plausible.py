@@ -11,7 +11,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from calibration.campaign.load_campaign import load_campaign
-from calibration.campaign.plausible import check_plausible
+from calibration.campaign.record_plausibility import check_plausible
 from jaxhydro.errors import InputError
 from jaxhydro.interop.data_files import read_table
 

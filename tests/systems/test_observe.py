@@ -20,7 +20,7 @@ from calibration.commands.simulate_campaign_command import simulate_campaign
 from calibration.discovery.diagnosis_fits import test_fits_at as fitted_tests
 from calibration.discovery.effects.candidates import with_effects
 from calibration.discovery.linearisations import Point
-from calibration.discovery.set_up import set_up_study
+from calibration.discovery.study_set_up import set_up_study
 from calibration.parameters.space import parameter_space
 from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.measured_seas import compare

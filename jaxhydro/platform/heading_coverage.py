@@ -1,4 +1,4 @@
-"""Tables of a platform file that were computed for other wave headings than those asked for."""
+"""Check that the tables of a platform file cover the wave headings asked for."""
 
 from typing import Any, NamedTuple
 

@@ -1,4 +1,4 @@
-"""Precomputed parts that irregular seas of equal frequencies and one heading share."""
+"""Parts of a prepared sea that seas of equal frequencies and heading share."""
 
 import math
 from typing import Any

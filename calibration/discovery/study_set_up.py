@@ -1,4 +1,4 @@
-"""Set-up of a study: motions, candidates, nuisance parameters, scales and priors."""
+"""Study of a campaign with its candidates, nuisance parameters, scales and priors."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Evaluation of a traced function, operation by operation, with calls inlined."""
+"""Evaluation of a traced function (jaxpr), operation by operation, with calls inlined."""
 
 from collections.abc import Callable, Sequence
 from typing import Any

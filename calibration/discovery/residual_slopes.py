@@ -1,4 +1,4 @@
-"""Residuals of decays and seas, and their slopes along any few directions.
+"""Compiled residuals of one decay or run in waves, with their slopes along a few directions.
 
 Directions are data, so that one compiled program scores every candidate effect and refits any few of them.
 """
