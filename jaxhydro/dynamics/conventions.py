@@ -18,8 +18,8 @@ class Conventions:
             "mean": the part under still water at the upright reference position, in the flow at that depth.
         diffraction: Wave diffraction by the members that diffract. "maccamy_fuchs"; "ramp", the same but with coefficients
             tuned away from Ca = 1 kept in long waves (`diffraction.long_waves`); "none".
-        directions: Axes of strips and ends. "body": of the displaced member. "earth": of the undisplaced one, as in
-            OpenFAST.
+        directions: Axes of strips, ends, added mass and radiation. "body": of the displaced body. "earth": of the undisplaced
+            one, as in OpenFAST.
         waves_at: Where the waves are evaluated horizontally. "displaced": where the platform is. "mean": at the reference
             position, as in OpenFAST with WaveDisp = 0 and ExctnDisp = 0.
         centripetal: Whether strips and ends feel the centripetal part of their acceleration. False is for programs whose

@@ -103,6 +103,7 @@ def instant(model: "Model", time: Float[Array, ""], state: State, sea: AbstractS
         _wetted_at_rest(hull).elements if changes.mass_replaced and replaced is None else None,
         slender,
         flow_at_lids(flow, matrix, hull),
+        matrix if conventions.directions == "earth" else None,
     )
 
 

@@ -75,7 +75,9 @@ class Hull(eqx.Module):
         return cls(elements, strips, tips, cylinders, on_device(positions), gauge_of, *matrices, *more)
 
     def turned(self, rotation: Float[Array, "3 3"]) -> "Hull":
-        """Hull with the directions of strips and ends rotated about their points."""
+        """Hull with the directions of strips and ends rotated about their points; one without members is as it was."""
+        if not len(self.elements.length):
+            return self
         strips = eqx.tree_at(lambda x: x.directions, self.strips, jnp.einsum("ij,jdn->idn", rotation, self.strips.directions))
         tips = eqx.tree_at(lambda x: x.axis, self.ends, rotation @ self.ends.axis)
         powers = (self.moments.shape[2] - tips.area.size) // max(2 * len(self.elements.length), 1)

@@ -59,8 +59,7 @@ def read_openfast_deck(path: str | PathLike[str]) -> Conversion:
     platform |= {key: flow.keys[key] for key in ("added_mass",) if key in flow.keys}
     platform |= _mooring(deck, water, terms, items)
     platform |= {key: value for key, value in flow.keys.items() if key != "added_mass"}
-    if platform.get("members"):
-        platform |= _forms(deck, items)
+    platform |= _forms(deck, platform, items)
     if deck.waves is not None:
         current, current_items = read_current(deck.waves, water.depth)
         platform["water"] |= {"current": current} if current else {}
@@ -146,21 +145,36 @@ def _lines(deck: DeckFiles, water: WaterColumn, items: list[ConvertedItem]) -> d
     return section
 
 
-def _forms(deck: DeckFiles, items: list[ConvertedItem]) -> dict[str, Any]:
-    """Forms of the strip loads as HydroDyn has them."""
-    if (file := deck.hydrodyn) is None:
+def _forms(deck: DeckFiles, platform: dict[str, Any], items: list[ConvertedItem]) -> dict[str, Any]:
+    """Forms of the loads of strips and tables as HydroDyn has them."""
+    file, strips = deck.hydrodyn, bool(platform.get("members"))
+    tables = bool({"added_mass", "radiation", "excitation"} & set(platform))
+    if file is None or not (strips or tables):
         return {}
-    text = "`directions: earth`: HydroDyn loads strips along the axes of the upright platform."
-    items.append(ConvertedItem(f"{file.name}: strips", Treatment.TAKEN, text))
-    mode = "WaveDisp" if file.has("WaveDisp") else "ExctnDisp"
-    moving = file.whole(mode, 0) > 0
-    waves_at = "displaced" if moving else "mean"
-    items.append(ConvertedItem(f"{file.name}: {mode}", Treatment.TAKEN, f"`waves_at: {waves_at}`."))
+    text = "`directions: earth`: HydroDyn has strips, added mass and radiation along the axes of the upright platform."
+    items.append(ConvertedItem(f"{file.name}: axes", Treatment.TAKEN, text))
+    forms = {"directions": "earth"} | _waves_at(file, strips, "excitation" in platform, items)
+    if not strips:
+        return forms
     stretching = deck.waves.whole("WaveStMod", 0) if deck.waves is not None else 0
     wetting = "instantaneous" if stretching else "mean"
     where = f"{(deck.waves or file).name}: WaveStMod"
     items.append(ConvertedItem(where, Treatment.TAKEN, f"`wetting: {wetting}`."))
-    return {"wetting": wetting, "directions": "earth", "waves_at": waves_at}
+    return {"wetting": wetting} | forms
+
+
+def _waves_at(file: KeyedFile, strips: bool, excitation: bool, items: list[ConvertedItem]) -> dict[str, str]:
+    """Where waves are met: by ExctnDisp where tables have the wave forces, else by WaveDisp."""
+    modes = [key for key, used in (("ExctnDisp", excitation), ("WaveDisp", strips and file.has("WaveDisp"))) if used]
+    modes = modes or ["ExctnDisp"]
+    places = ["displaced" if file.whole(mode, 0) > 0 else "mean" for mode in modes]
+    text = f"`waves_at: {places[0]}`."
+    if len(set(places)) > 1:
+        text += f" {modes[1]} has the waves of strips elsewhere ({places[1]}): there is one key for both."
+        items.append(ConvertedItem(f"{file.name}: {', '.join(modes)}", Treatment.APPROXIMATED, text))
+    else:
+        items.append(ConvertedItem(f"{file.name}: {', '.join(modes)}", Treatment.TAKEN, text))
+    return {"waves_at": places[0]}
 
 
 def _of_version(file: KeyedFile) -> list[ConvertedItem]:

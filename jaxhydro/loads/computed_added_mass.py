@@ -12,8 +12,8 @@ from jaxhydro.parameters import parameter
 class ComputedAddedMass(AbstractLoad):
     """Added mass of potential theory at infinite frequency, in place of that of strips and ends.
 
-    F = -s A(infinity) a, a the acceleration of the reference point in body axes, its quadratic terms left out; the added mass
-    of strips and ends counts 1 - s.
+    F = -s A(infinity) a, a the acceleration of the reference point along the axes of `AddedMass`, its quadratic terms left out;
+    the added mass of strips and ends counts 1 - s.
 
     It is the part of Cummins' equation that the memory (`ComputedRadiation`) leaves: with s = 1 and the whole memory, the
     added mass at a frequency is that of the program. s is a share: 0 for the strips' own added mass, 1 for the program's. What
@@ -33,4 +33,4 @@ class ComputedAddedMass(AbstractLoad):
         return self.share
 
     def act(self, now: Instant, memory: Any) -> Action:
-        return Action(added_mass=self.share * self.matrix)
+        return Action(added_mass=now.body_added_mass(self.share * self.matrix))

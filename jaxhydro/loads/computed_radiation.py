@@ -16,7 +16,8 @@ from jaxhydro.parameters import parameter
 class ComputedRadiation(AbstractLoad):
     """Radiation memory force by Cummins' equation, as a state space.
 
-    F = -s int_0^inf K(u) v(t - u) du along body axes, K(t) = 2/pi int_0^inf B(omega) cos(omega t) d omega (Cummins 1962).
+    F = -s int_0^inf K(u) v(t - u) du along body axes, K(t) = 2/pi int_0^inf B(omega) cos(omega t) d omega (Cummins 1962). With
+    `directions` "earth" of the model's conventions it is along earth axes, as in OpenFAST.
 
     v is the velocity of the reference point (m/s) and the angular velocity (rad/s). B is the radiation damping of potential
     theory, all 36 entries, about the same point. s is the share of the force, complete at 1. K is that of a state space
@@ -54,5 +55,5 @@ class ComputedRadiation(AbstractLoad):
         return float(self.share) * output @ np.linalg.solve(1j * omega * np.eye(len(rates)) - rates, drive)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        force = -self.share * (self.output @ memory)
-        return Action(body_force=force, memory_rate=self.rates @ memory + self.drive @ now.velocity)
+        force = now.body_force(-self.share * (self.output @ memory))
+        return Action(body_force=force, memory_rate=self.rates @ memory + self.drive @ now.matrix_velocity())

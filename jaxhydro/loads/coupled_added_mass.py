@@ -10,8 +10,8 @@ from jaxhydro.loads.matrix import Entries, assemble_symmetric, by_pair
 class CoupledAddedMass(AbstractLoad):
     """Symmetric added mass between pairs of degrees of freedom.
 
-    F_i = -A_ij a_j, F_j = -A_ij a_i in body axes: added mass whose centre is at another height than the strips give. Labels are
-    `coupled_added_mass.A15` and so on.
+    F_i = -A_ij a_j, F_j = -A_ij a_i along the axes of `AddedMass`: added mass whose centre is at another height than the strips
+    give. Labels are `coupled_added_mass.A15` and so on.
 
     References:
         Newman 1977, Marine Hydrodynamics, chapter 4, its quadratic terms left out.
@@ -21,4 +21,4 @@ class CoupledAddedMass(AbstractLoad):
     source: ClassVar[str] = "Newman 1977, chapter 4"
 
     def act(self, now: Instant, memory: Any) -> Action:
-        return Action(added_mass=assemble_symmetric(self.entries))
+        return Action(added_mass=now.body_added_mass(assemble_symmetric(self.entries)))

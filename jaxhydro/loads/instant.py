@@ -40,6 +40,8 @@ class Instant(eqx.Module):
         at_rest: First-order forces at rest that strips and ends do not keep, or None.
         slender: Flow past slender members to second order, or None.
         lid: Pressure over density (m²/s²) and acceleration (m/s², body axes) of the water at the points of `Hull.leaning`.
+        matrix_axes: Rotation matrix from body axes to those that matrices of added mass and radiation are along; None: body
+            axes.
     """
 
     time: Float[Array, ""]
@@ -62,10 +64,30 @@ class Instant(eqx.Module):
     part_at_rest: Wetted | None = None
     slender: SlenderFlow | None = None
     lid: tuple[Float[Array, " k"], Float[Array, "3 k"]] | None = None
+    matrix_axes: Float[Array, "3 3"] | None = None
 
     def earth_velocity(self) -> Float[Array, "6"]:
         """Velocity of the reference point and angular velocity in earth axes (m/s, rad/s)."""
         return jnp.concatenate([self.rotation @ self.velocity[:3], self.rotation @ self.velocity[3:]])
+
+    def matrix_velocity(self) -> Float[Array, "6"]:
+        """Velocity of the reference point and angular velocity along `matrix_axes` (m/s, rad/s)."""
+        if self.matrix_axes is None:
+            return self.velocity
+        return jnp.concatenate([self.matrix_axes @ self.velocity[:3], self.matrix_axes @ self.velocity[3:]])
+
+    def body_force(self, force: Float[Array, "6"]) -> Float[Array, "6"]:
+        """Force and moment in body axes (N, N m), from those along `matrix_axes`."""
+        if self.matrix_axes is None:
+            return force
+        return jnp.concatenate([force[:3] @ self.matrix_axes, force[3:] @ self.matrix_axes])
+
+    def body_added_mass(self, matrix: Float[Array, "6 6"]) -> Float[Array, "6 6"]:
+        """Added mass in body axes (kg, kg m, kg m²), from that along `matrix_axes`."""
+        if self.matrix_axes is None:
+            return matrix
+        blocks = matrix.reshape(2, 3, 2, 3)
+        return jnp.einsum("ki,akbl,lj->aibj", self.matrix_axes, blocks, self.matrix_axes).reshape(6, 6)
 
     def diffracting(self) -> Bool[Array, " n"]:
         """Whether each strip diffracts the waves."""

@@ -177,6 +177,22 @@ def test_forms_of_the_loads_follow_the_deck(edited: Edited) -> None:
     assert [still.platform[key] for key in ("wetting", "waves_at")] == ["mean", "mean"]
 
 
+def test_waves_are_met_where_the_tables_have_them(tmp_path: Path) -> None:
+    """ExctnDisp says it for tables, WaveDisp for strips; there is one key for both."""
+    folder = shutil.copytree(DECK, tmp_path / "deck")
+    for ending in (".1", ".3"):
+        shutil.copyfile(DECK.parents[1] / "data" / "hams-cylinder" / f"Buoy{ending}", folder / f"zeros{ending}")
+    text = (folder / "hydrodyn.dat").read_text(encoding="utf-8")
+    for old, new in (("0   ExctnMod", "1   ExctnMod"), ("0   RdtnMod", "1   RdtnMod")):
+        assert old in text
+        text = text.replace(old, new, 1)
+    (folder / "hydrodyn.dat").write_text(text, encoding="utf-8")
+    deck = read_openfast_deck(folder / "main.fst")
+    assert deck.platform["excitation"] == {"file": "zeros.3"} and deck.platform["directions"] == "earth"
+    assert deck.platform["waves_at"] == "mean"
+    assert "WaveDisp has the waves of strips elsewhere (displaced)" in said(deck, "ExctnDisp", Treatment.APPROXIMATED)
+
+
 def test_the_older_format_is_read(edited: Edited) -> None:
     """Tables without Cb and rectangles, members without MSecGeom, keys of other names: as in OpenFAST 3."""
     new = " ".join(f"Simpl{name}{grown}" for name in ("Cd", "Ca", "Cp", "AxCd", "AxCa", "AxCp") for grown in ("", "MG"))
