@@ -31,17 +31,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from benchmarks.public_hulls_cases import CASES, Case
+from benchmarks.public_hulls_motions import motions
 from benchmarks.public_hulls_text import text
 from jaxhydro.dynamics.statics import EquilibriumError
 from jaxhydro.errors import InputError, Problem
 
 RAW, TEXT = (Path(__file__).with_name(f"results-public-hulls.{ending}") for ending in ("json", "md"))
 RAFT_RESULTS = Path(__file__).with_name("raft") / "converted.json"  # of benchmarks.raft_designs
-HS, TP, DURATION, INTERVAL = 3.0, 10.0, 300.0, 0.1  # m, s, s, s: the sea, and its samples
-CALM = 1e-9  # factor on the waves of the sea in which a decay is simulated
 ITERATIONS = 20  # of a period with the added mass of its own frequency
 DOFS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-SHOWN = ("surge", "heave", "pitch")
 
 
 def with_edits(source: Path, edits: Mapping[str, Mapping[str, str]], folder: Path) -> Path:
@@ -185,38 +183,6 @@ def statics(hull: Hull) -> dict[str, Any]:
     }
 
 
-def motions(model: Any, case: Case) -> dict[str, Any]:
-    """Period of a decay in heave, and standard deviations (m, deg) in a sea; both by one compiled program."""
-    import equinox as eqx
-
-    import jaxhydro as jh
-    from jaxhydro.dynamics.requested_sea import RequestedSea, usual_transient
-    from jaxhydro.dynamics.response import decay_cycles
-    from jaxhydro.dynamics.sea_of_request import build_sea
-    from jaxhydro.dynamics.time_steps import largest_step
-
-    times = np.arange(0.0, DURATION + INTERVAL / 2, INTERVAL)
-    how: dict[str, Any] = {"gamma": None, "spectrum": "jonswap", "seed": 0, "amplitudes": "deterministic", "low": None}
-    how |= {"cutoff": None, "order": 1, "stretching": "none", "heading": 0.0, "transient": None}
-    asked = RequestedSea(hs=HS, tp=TP, **how)
-    sea = build_sea(model, asked, DURATION).sea
-    calm = eqx.tree_at(lambda one: one.components.amplitude, sea, replace_fn=lambda amplitude: CALM * amplitude)
-    cutoff = asked.band(float(model.pace))[1]
-    step = case.step or float(largest_step(model, cutoff))
-    release = {"heave": case.release}
-    heave = np.asarray(jh.free_decay(model, release, times, sea=calm, step=step).position)[:, 2]
-    cycles = decay_cycles(times, heave - float(jh.equilibrium(model)[2]))
-    moved = np.asarray(jh.free_decay(model, {"heave": 0.0}, times, sea=sea, step=step).position)
-    late = moved[times >= usual_transient(DURATION, float(model.pace))]
-    deviations = dict(zip(jh.DOFS, late.std(axis=0).tolist()))
-    return {
-        "decay": {"release": case.release, "half_cycles": len(cycles.period), "period": float(np.mean(cycles.period[:6]))},
-        "sea": {dof: math.degrees(x) if dof == "pitch" else x for dof, x in deviations.items() if dof in SHOWN},
-        "cutoff": cutoff,
-        "step": step,
-    }
-
-
 def save(results: Mapping[str, Any]) -> None:
     """Write the raw results, in the order of the hulls."""
     RAW.write_text(json.dumps({key: results[key] for key in CASES if key in results}, indent=1) + "\n", encoding="utf-8")
@@ -237,23 +203,22 @@ def main(arguments: list[str] | None = None) -> None:
     models: dict[str, Hull] = {}
     for part in ("statics",) if given.statics else ("statics", "motions"):
         for name in given.only:
-            if part in results.get(name, {}) and not (given.again and name not in models):
+            if part in results.get(name, {}) and not given.again:
                 continue
             case = CASES[name]
             if part == "statics" and (known := stored(case)):
                 results[name] = results.get(name, {}) | known[0] | {part: known[1]}
                 continue
             if absent := missing(given.folder, case):
-                if part == "statics":
-                    print(f"{name}: left out, {given.folder / absent} is not there", flush=True)
+                print(f"{name}, {part}: left out, {given.folder / absent} is not there", flush=True)
                 continue
             begin = time.monotonic()
             if name not in models:
                 models[name] = built(given.folder, case)
-                kept = {} if given.again else results.get(name, {})
-                results[name] = kept | models[name].read
+                results[name] = results.get(name, {}) | models[name].read
+            hull = models[name]
             try:
-                results[name][part] = statics(models[name]) if part == "statics" else motions(models[name].model, case)
+                results[name][part] = statics(hull) if part == "statics" else motions(hull.model, hull.radiation, case)
             except (EquilibriumError, ValueError) as error:
                 print(f"{name}, {part}: {error}", flush=True)
                 results[name] |= {"fault": f"{part}: {error}"}

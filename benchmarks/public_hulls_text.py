@@ -4,7 +4,9 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from benchmarks.public_hulls_cases import CASES, MOTIONS, Case, Published
+from benchmarks.public_hulls_cases import CASES, Case, Published
+from benchmarks.public_hulls_motions_text import motion_reasons, motion_sections, motions_summary
+from benchmarks.public_hulls_reasons import MOTIONS
 
 GOAL = 0.02  # deviation that needs no reason
 HEAD = ("Hull", "Quantity", "Converted", "Published", "Deviation", "Source")
@@ -92,18 +94,15 @@ def rest_words(rest: list[float] | None) -> str:
 
 
 def summary_row(case: Case, found: Mapping[str, Any]) -> tuple[str, ...]:
-    """Mass, volume, rest, lines, decay and sea of a hull."""
-    still, moving = found["statics"], found.get("motions")
+    """Mass, volume, rest and lines of a hull."""
+    still = found["statics"]
     tensions = [tension / 1e3 for tension in still["tensions"]]
-    sea = moving["sea"] if moving and case.waves else {}
     return (
         title_of(case),
         f"{still['mass'] / 1e3:.1f}",
         f"{still['volume']:.1f}",
         rest_words(still["rest"]),
         f"{min(tensions):.0f} to {max(tensions):.0f}" if tensions else "-",
-        f"{moving['decay']['period']:.2f}" if moving else "-",
-        *(f"{sea[dof]:.3f}" if sea else "-" for dof in ("surge", "heave", "pitch")),
     )
 
 
@@ -151,12 +150,12 @@ def text(results: Mapping[str, Any]) -> str:
         "# Public hulls and decks, converted",
         f"{len(done)} public hulls and decks were converted by `jaxhydro convert`. "
         f"{within} of {total} values agree with published ones, or with the source program's own, within 2 % or the rounding. "
-        "Each larger deviation has its reason below.",
+        "Each larger deviation has its reason below. " + motions_summary([found for _, found in done.values()]),
         "Made by `python -m benchmarks.public_hulls FOLDER`. The sources are copies of public repositories and are not kept "
         "here. "
         "Natural periods are undamped, at rest, with rigid towers. Where a source has radiation tables, each period has the "
         "added mass of its own frequency.",
-        "## Statics, one decay, one sea",
+        "## Statics",
         table(
             (
                 "Hull",
@@ -164,24 +163,19 @@ def text(results: Mapping[str, Any]) -> str:
                 "Displaced volume (m³)",
                 "At rest: surge, heave, pitch",
                 "Line tensions (kN)",
-                "Heave decay, period (s)",
-                "Surge in the sea (m)",
-                "Heave in the sea (m)",
-                "Pitch in the sea (°)",
             ),
             [summary_row(case, found) for case, found in done.values()],
         ),
-        f"- Decays and seas were run for {sum('motions' in found for _, found in done.values())} of {len(done)} hulls.\n"
-        "- Decay: released 1 m above rest, in still water; the mean of up to six half cycles. The TLP is released from 0.1 m.\n"
-        "- Sea: JONSWAP, Hs 3 m, Tp 10 s, 300 s, first order, waves along x; standard deviations after the first 75 s.\n"
-        "- Tensions are those at the fairleads, at rest, of the lines with the least and the most.",
+        "Tensions are those at the fairleads, at rest, of the lines with the least and the most.",
         "## Natural periods (s)",
         table(("Hull", *MOTIONS, "heave, added mass of infinite frequency"), periods),
         "`natural_modes` and `jaxhydro statics` have the added mass of each period's own frequency, too.",
+        *motion_sections({title_of(case): found for case, found in done.values()}, table),
         "## Against published values",
         table(HEAD, rows),
         "## Reasons of deviations above 2 %",
-        "\n".join(reasons) or "- None.",
+        "\n".join([*reasons, *motion_reasons([(title_of(case), case.reasons, found) for case, found in done.values()])])
+        or "- None.",
         "## Notes",
         "\n".join(notes) or "- None.",
         "## What was read",

@@ -3,18 +3,40 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from benchmarks.public_hulls import RAW, TEXT, main, missing, with_edits
 from benchmarks.public_hulls_cases import CASES, Published
+from benchmarks.public_hulls_motions import INTERVAL, in_band
+from benchmarks.public_hulls_motions_text import motion_reasons
 from benchmarks.public_hulls_text import compared, text
 
 STATICS = {"mass": 1010.0, "volume": 2.0, "tensions": [90.0, 110.0], "pull": 50.0, "periods": {"heave": 20.0, "pitch": 31.0}}
+DECAYS = {dof: {"period": period, "release": 1.0, "half_cycles": 9} for dof, period in (("heave", 20.0), ("pitch", 32.0))}
+DECAYS["surge"] = {"period": None, "release": 5.0, "half_cycles": 0}
+SEA = {key: {"surge": 1.0, "heave": heave, "pitch": 1.0} for key, heave in (("simulated", 1.1), ("linear", 1.0))}
+STATICS_AND_MOTIONS = {"statics": STATICS, "motions": {"decays": DECAYS, "sea": SEA}}
 
 
 def test_the_page_is_made_from_the_raw_results() -> None:
     results = json.loads(RAW.read_text("utf-8"))
     assert len(results) >= 10 and TEXT.read_text("utf-8") == text(results)
+
+
+def test_every_hull_has_decays_and_every_deviation_a_reason() -> None:
+    results = json.loads(RAW.read_text("utf-8"))
+    assert all("motions" in found and "fault" not in found for found in results.values())
+    assert "not explained yet.\n" not in TEXT.read_text("utf-8")
+    lines = motion_reasons([("hull", {"heave sea": "drag."}, STATICS_AND_MOTIONS)])
+    assert list(lines) == ["- hull: heave sea +10.0 %: drag.", "- hull: pitch decay +3.2 %: not explained yet."][::-1]
+
+
+def test_deviations_in_a_band() -> None:
+    """A sine of 10 s has its standard deviation; a drift of 200 s is left out."""
+    times = np.arange(0.0, 2700.0, INTERVAL)
+    motion = np.sqrt(2) * np.sin(2 * np.pi * times / 10)[:, None] + 5 * np.sin(2 * np.pi * times / 200)[:, None] * np.ones(6)
+    assert in_band(motion) == pytest.approx(np.ones(6), rel=1e-3)
 
 
 def test_deviations_and_rounding() -> None:
