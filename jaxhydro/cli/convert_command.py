@@ -34,7 +34,7 @@ def convert_model(source: Path, folder: Path) -> None:
     conversion = convert_file(source)
     with staged(folder) as temporary:
         (temporary / PLATFORM_FILE).write_text(platform_text(conversion, str(source)), encoding="utf-8")
-        (temporary / PAGE).write_text(conversion_page(conversion, source.name), encoding="utf-8")
+        (temporary / PAGE).write_text(conversion_page(conversion, source.resolve().name), encoding="utf-8")
         for name, path in conversion.files.items():
             copy_whole(path, temporary / name)
         model = _built(temporary, source)
@@ -69,6 +69,9 @@ def print_losses(items: Sequence[ConvertedItem]) -> None:
         say(f"approximated: {item.source}: {item.meaning}")
     if len(close) > MAX_TOLD:
         say(f"and {len(close) - MAX_TOLD} more.")
+    for item in items:
+        if item.treatment is Treatment.TO_FILL_IN and not item.warning:
+            say(f"to be filled in: {item.source}: {item.meaning}")
     if left_out := [item.source for item in items if item.treatment is Treatment.LEFT_OUT and not item.warning]:
         say(f"left out: {'; '.join(left_out)}.")
 

@@ -41,9 +41,11 @@ CONVERTING = "\n\n".join(
     (
         "[bold]Examples[/bold]",
         "jaxhydro convert deck/main.fst --out my-platform",
+        "jaxhydro convert nemoh-case --out my-platform",
         "jaxhydro simulate my-platform/platform.yaml --release heave=1",
         "[bold]What it writes[/bold]",
-        "platform.yaml, copies of the tables that it names, and conversion.md: what was taken, approximated and left out. "
+        "platform.yaml, copies of the tables that it names, and conversion.md: what was taken, approximated, left out, and "
+        "what to fill in. "
         "A folder that is not empty is refused. Exit status: 0 done; 2 the input is wrong, and nothing was written.",
     )
 )

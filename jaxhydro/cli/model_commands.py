@@ -131,13 +131,20 @@ def statics(
 
 
 def convert(
-    source: Annotated[Path, typer.Argument(help="OpenFAST's main file (.fst) or a RAFT design (.yaml).", metavar="SOURCE")],
+    source: Annotated[
+        Path,
+        typer.Argument(
+            help="OpenFAST's main file (.fst), a RAFT design (.yaml), or results of WAMIT, HAMS, Nemoh or Capytaine: a folder.",
+            metavar="SOURCE",
+        ),
+    ],
     out: Annotated[Path, typer.Option("--out", help="A new or an empty folder.")],
 ) -> None:
     """Make platform.yaml of another program's model, with a page that says what became of each item of it.
 
     Of an OpenFAST deck: mass (ElastoDyn), members, coefficients, ballast and potential flow (HydroDyn), moorings (MoorDyn),
-    water. Of a RAFT design: members, masses of shell and ballast, turbine, moorings, water.
+    water. Of a RAFT design: members, masses of shell and ballast, turbine, moorings, water. Of panel programs: tables, water,
+    and the mass where it is known; what has to be filled in by hand is marked.
     """
     from jaxhydro.cli.convert_command import convert_model
 

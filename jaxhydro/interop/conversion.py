@@ -13,6 +13,7 @@ class Treatment(StrEnum):
     TAKEN = "taken"
     APPROXIMATED = "approximated"
     LEFT_OUT = "left out"
+    TO_FILL_IN = "to be filled in"
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,8 @@ class ConvertedItem:
     """One item of the source.
 
     Attributes:
-        source: File and key, such as `HydroDyn.dat: Simple hydrodynamic coefficients`.
+        source: File and key, such as `HydroDyn.dat: Simple hydrodynamic coefficients`. Of what is to be filled in: the
+            platform file's key.
         treatment: What became of it.
         meaning: In a sentence: what it is in the platform file, what was assumed, or why it was left out.
         warning: Whether the platform is wrong without it, so that it has to be looked at.

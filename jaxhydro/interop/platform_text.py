@@ -6,7 +6,12 @@ from pathlib import Path
 from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
 from jaxhydro.interop.yaml_text import yaml_text
 
-HEADINGS = {Treatment.TAKEN: "Taken", Treatment.APPROXIMATED: "Approximated", Treatment.LEFT_OUT: "Left out"}
+HEADINGS = {
+    Treatment.TO_FILL_IN: "To be filled in by hand",
+    Treatment.TAKEN: "Taken",
+    Treatment.APPROXIMATED: "Approximated",
+    Treatment.LEFT_OUT: "Left out",
+}
 _HEAD = """\
 # Made by `jaxhydro convert` from {source}.
 # conversion.md says what was taken, what was approximated and what was left out. All keys: docs/formats.md.
@@ -21,7 +26,10 @@ def platform_text(conversion: Conversion, source: str) -> str:
         conversion: The conversion.
         source: Name of what was converted, for the header.
     """
-    return _HEAD.format(source=" ".join(source.split())) + yaml_text(conversion.platform)
+    missing = [item for item in conversion.items if item.treatment is Treatment.TO_FILL_IN]
+    lines = [f"#   {item.source}: {' '.join(item.meaning.split())}\n" for item in missing]
+    told = "# To be filled in by hand:\n" + "".join(lines) if lines else ""
+    return _HEAD.format(source=" ".join(source.split())) + told + yaml_text(conversion.platform)
 
 
 def conversion_page(conversion: Conversion, source: str) -> str:
@@ -54,7 +62,8 @@ def items_page(title: str, items: Sequence[ConvertedItem], files: Mapping[str, P
 
 def counted(items: Sequence[ConvertedItem]) -> str:
     """Number of items by what became of them, in words."""
-    return ", ".join(f"{sum(item.treatment is kind for item in items)} {kind}" for kind in Treatment)
+    counts = {kind: sum(item.treatment is kind for item in items) for kind in Treatment}
+    return ", ".join(f"{count} {kind}" for kind, count in counts.items() if count or kind is not Treatment.TO_FILL_IN)
 
 
 def _row(item: ConvertedItem) -> str:

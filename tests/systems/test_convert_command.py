@@ -20,6 +20,7 @@ from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.mooring_schema import StiffnessMatrix
 from jaxhydro.platform.schema import Platform, load_platform
 
+ELLIPSOID = Path(__file__).resolve().parents[1] / "data" / "ellipsoid" / "nemoh-v3.0.2"
 DECK = Path(__file__).resolve().parents[1] / "fixtures" / "openfast_deck"
 REFERENCE = Path(__file__).resolve().parents[3] / "shared" / "reference"
 IEA15 = REFERENCE / "iea15-umaine" / "IEA-15-240-RWT-UMaineSemi.fst"
@@ -66,6 +67,31 @@ def test_other_files_are_answered_in_words(tmp_path: Path) -> None:
     assert "OpenFAST main file (.fst)" in run("convert", DECK / "hydrodyn.dat", "--out", tmp_path / "a", status=2)
     assert "Did you mean" in run("convert", DECK / "mian.fst", "--out", tmp_path / "a", status=2)
     assert "Name the file in it" in run("convert", DECK, "--out", tmp_path / "a", status=2)
+
+
+def test_results_of_a_panel_program(tmp_path: Path) -> None:
+    """What has to be filled in stands on top of the platform file, which loads, and in conversion.md."""
+    folder = shutil.copytree(ELLIPSOID, tmp_path / "Ellipsoid")
+    text = run("convert", folder, "--out", tmp_path / "new")
+    names = ["ExcitationForce.tec", "Hydrostatics.dat", "KH.dat", "Nemoh.cal", "RadiationCoefficients.tec"]
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == [*names, "conversion.md", "platform.yaml"]
+    head = (tmp_path / "new" / "platform.yaml").read_text(encoding="utf-8").split("name:")[0]
+    assert "# To be filled in by hand:\n" in head and "#   rigid_body.inertia: " in head and "to be filled in: mooring" in text
+    assert "## To be filled in by hand" in (tmp_path / "new" / "conversion.md").read_text(encoding="utf-8")
+    periods = jh.natural_modes(jh.build(load_platform(tmp_path / "new" / "platform.yaml"))).period
+    assert np.isfinite(periods).all() and len(periods) == 3  # heave, roll, pitch: nothing holds it in the others
+
+
+def test_broken_results_write_nothing(tmp_path: Path) -> None:
+    folder = shutil.copytree(ELLIPSOID, tmp_path / "Ellipsoid")
+    path = folder / "results" / "RadiationCoefficients.tec"
+    path.write_text(path.read_text(encoding="utf-8").replace("E+", "X+", 1), encoding="utf-8")
+    assert "RadiationCoefficients.tec: " in run("convert", folder, "--out", tmp_path / "new", status=2)
+    path.unlink()
+    (folder / "results" / "ExcitationForce.tec").unlink()
+    told = run("convert", folder, "--out", tmp_path / "new", status=2)
+    assert "Ellipsoid: expected results/RadiationCoefficients.tec or results/ExcitationForce.tec, found neither" in told
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["Ellipsoid"]
 
 
 @with_reference

@@ -1,0 +1,1 @@
+"""Result folders of panel programs (WAMIT, HAMS, Nemoh, Capytaine) as platforms."""
