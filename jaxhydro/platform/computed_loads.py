@@ -10,6 +10,7 @@ import numpy as np
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.capytaine_radiation import read_capytaine
 from jaxhydro.interop.capytaine_waves import read_capytaine_directions, read_capytaine_excitation
+from jaxhydro.interop.damping_that_takes_energy import taking_energy
 from jaxhydro.interop.nemoh_tables import read_nemoh_directions, read_nemoh_excitation, read_nemoh_radiation
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 from jaxhydro.interop.retardation import Realisation, realise
@@ -91,6 +92,10 @@ def _realised(radiation: Radiation, stamp: int, density: float) -> RealisedRadia
     else:
         assert not isinstance(radiation.body, int)
         coefficients = read_capytaine(source, body=radiation.body, density=density, notes=notes)
+    coefficients, change = taking_energy(coefficients)
+    if change:
+        text = f"an entry is changed by up to {change:.0%} of the two motions' own"
+        notes.append(f"{source}: damping gives energy at some frequencies. It is taken without that: {text}")
     try:
         space = realise(coefficients, radiation.tolerance, radiation.order)
     except ValueError as error:

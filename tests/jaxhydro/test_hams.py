@@ -7,6 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
+from jaxhydro.interop.damping_that_takes_energy import taking_energy
+from jaxhydro.interop.retardation import realise
 from jaxhydro.interop.wamit_excitation import read_directional_excitation, read_excitation
 from jaxhydro.interop.wamit_hydrostatics import read_hydrostatics
 from jaxhydro.interop.wamit_radiation import read_wamit
@@ -38,6 +40,18 @@ def test_damping_is_that_of_the_forces() -> None:
         whole = k / (8 * np.pi * DENSITY * GRAVITY * speed)
         assert radiation.damping[i, 2, 2] == pytest.approx(whole * 2 * np.pi * abs(force[2, i]) ** 2, rel=0.01)
         assert radiation.damping[i, 0, 0] == pytest.approx(whole * np.pi * abs(force[0, i]) ** 2, rel=0.03)
+
+
+def test_damping_that_gives_energy_is_taken_without_that() -> None:
+    """The cylinder's roll damping is below zero at some frequencies; what is left can be followed."""
+    table = read_wamit(DATA / "Buoy.1", DENSITY)
+    assert table.damping[:, 3, 3].min() < 0
+    mended, change = taking_energy(table)
+    assert 0.0 < change < 0.15 and np.linalg.eigvalsh(mended.damping).min() > -1e-9 * mended.damping.max()
+    assert_allclose(mended.damping[:, 2, 2], table.damping[:, 2, 2], rtol=0.01)
+    assert realise(table).misfit > 0.9 and realise(mended).misfit < 0.02
+    assert taking_energy(mended)[1] == 0.0
+    assert taking_energy(table._replace(damping=-table.damping))[1] == 0.0  # a wrong sign is no inaccuracy
 
 
 def test_phases_and_headings_are_wamits() -> None:

@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.interop.damping_that_takes_energy import taking_energy
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 from jaxhydro.interop.retardation import realise
 
@@ -26,6 +27,7 @@ def infinite_added_mass(coefficients: RadiationCoefficients, source: str) -> tup
     References:
         Ogilvie (1964), 5th Symposium on Naval Hydrodynamics.
     """
+    coefficients, _ = taking_energy(coefficients)
     try:
         memory = realise(coefficients).transfer(coefficients.omega)
     except ValueError as error:
