@@ -19,6 +19,7 @@ from jaxhydro.platform.catenary_build import catenary_lines
 from jaxhydro.platform.catenary_schema import Catenary
 from jaxhydro.platform.mooring_schema import StiffnessMatrix
 from jaxhydro.platform.schema import Platform, load_platform
+from jaxhydro.waves.components import Components
 
 ELLIPSOID = Path(__file__).resolve().parents[1] / "data" / "ellipsoid" / "nemoh-v3.0.2"
 DECK = Path(__file__).resolve().parents[1] / "fixtures" / "openfast_deck"
@@ -139,3 +140,32 @@ def test_motions_of_a_converted_deck(dof: str, channel: str) -> None:
     platform = Platform.model_validate(read_openfast_deck(folder / "main.fst").platform)
     found = np.asarray(jh.simulate(jh.build(platform), times, position=jnp.asarray(start), step=0.5)[dof])
     assert np.abs(found - motion).max() < 2e-3 * np.abs(start).max()
+
+
+@with_reference
+@pytest.mark.slow
+def test_waves_of_a_converted_deck_with_tables(tmp_path: Path) -> None:
+    """Motions at wave frequencies as OpenFAST has them, with potential flow, catenaries and difference-frequency forces."""
+    run_folder = REFERENCE / "openfast" / "ss1_nwt"
+    for path in (*run_folder.iterdir(), *(IEA15.parent / "HydroData").iterdir()):
+        if path.is_file():
+            shutil.copyfile(path, tmp_path / path.name)
+    conversion = read_openfast_deck(tmp_path / "main.fst")
+    assert conversion.platform["directions"] == "earth" and conversion.platform["waves_at"] == "mean"
+    run("convert", tmp_path / "main.fst", "--out", tmp_path / "new")
+    model = jh.build(load_platform(tmp_path / "new" / "platform.yaml"))
+    rows = pd.read_csv(run_folder / "components.csv.gz", comment="#")
+    columns = (rows[key].to_numpy() for key in ("amp_m", "omega_rad_s", "k_1_m", "phase_rad"))
+    amplitude, omega, wavenumber, phase = map(jnp.asarray, columns)
+    waves = Components(amplitude, omega, wavenumber, jnp.zeros(len(rows)), phase, first=int(rows["index"][0]))
+    times, record = np.arange(0.0, 3900.0, 0.5), pd.read_csv(run_folder / "out.csv.gz", skiprows=[1]).astype(float)
+    motion = jh.simulate(model, times, jh.IrregularSea(waves, model.environment), position=jnp.zeros(6), step=0.2)
+    frequency, late = np.fft.rfftfreq(np.count_nonzero(times >= 300.0), 0.5), times >= 300.0
+
+    def size(values: np.ndarray) -> float:
+        spectrum = np.abs(np.fft.rfft(values[late] - values[late].mean())) ** 2
+        return float(np.sqrt(spectrum[(frequency > 0.05) & (frequency < 0.3)].sum()))
+
+    for dof, channel, unit in (("surge", "PtfmSurge", 1.0), ("heave", "PtfmHeave", 1.0), ("pitch", "PtfmPitch", np.pi / 180)):
+        theirs = np.interp(times, record["Time"], record[channel]) * unit
+        assert size(np.asarray(motion[dof])) == pytest.approx(size(theirs), rel=0.04)
