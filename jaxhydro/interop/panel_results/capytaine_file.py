@@ -43,7 +43,7 @@ def read_capytaine_file(path: Path) -> PanelCase:
         headings = capytaine_headings(dataset)
         case.force = read_capytaine_excitation(path, heading=float(headings[0]), notes=notes)
         case.keys["excitation"] = {"file": path.name}
-        case.say(WHOLE, Treatment.TAKEN, f"`excitation`: first-order wave forces, {len(headings)} headings.")
+        case.say(WHOLE, Treatment.TAKEN, f"`excitation`: first-order wave forces; headings: {len(headings)}.")
     if not case.keys:
         expected = f"added_mass and radiation_damping, or {WHOLE}"
         raise InputError(str(path), [Problem("", expected, ", ".join(sorted(variables)) or "no variables")])

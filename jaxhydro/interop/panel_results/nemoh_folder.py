@@ -64,7 +64,7 @@ def read_nemoh_folder(folder: Path) -> PanelCase:
         headings = nemoh_headings(source)
         case.force = read_nemoh_excitation(source, heading=float(headings[0]))
         case.keys["excitation"], case.files[FORCE] = {"file": FORCE}, source
-        case.say(FORCE, Treatment.TAKEN, f"`excitation`: first-order wave forces, {len(headings)} headings.")
+        case.say(FORCE, Treatment.TAKEN, f"`excitation`: first-order wave forces; headings: {len(headings)}.")
     if STIFFNESS in files and STATICS in files:
         statics = read_nemoh_hydrostatics(files[STIFFNESS], density=water.density, gravity=water.gravity, notes=notes)
         case.volume = statics.volume

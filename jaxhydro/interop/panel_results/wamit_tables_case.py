@@ -79,7 +79,7 @@ def add_tables(case: PanelCase, folder: Path, root: str | None, length: float, b
         knots = table.by_heading.heading
         case.force = table.towards(float(knots[0]))
         case.keys["excitation"] = entry(path)
-        case.say(path.name, Treatment.TAKEN, f"`excitation`: first-order wave forces, {knots.size} headings.")
+        case.say(path.name, Treatment.TAKEN, f"`excitation`: first-order wave forces; headings: {knots.size}.")
     if path := found.get(".12d"):
         case.keys["drift"] = entry(path)
         case.say(path.name, Treatment.TAKEN, "`drift`: forces at difference frequencies, all pairs of frequencies.")
