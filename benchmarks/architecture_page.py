@@ -17,12 +17,12 @@ WIDTH = 30  # of names
 def tree(folder: Path, depth: int = 0) -> Iterator[str]:
     """Yield the lines of a folder's tree: names, and what each is for."""
     yield _line(f"{folder.name}/", folder / "__init__.py", depth)
-    entries = [one for one in folder.iterdir() if not one.name.startswith("_")]
-    for one in sorted(entries, key=lambda one: (one.is_dir(), one.name)):
-        if one.suffix == ".py":
-            yield _line(one.name, one, depth + 1)
-        elif one.is_dir() and (one / "__init__.py").exists():
-            yield from tree(one, depth + 1)
+    entries = [path for path in folder.iterdir() if not path.name.startswith("_")]
+    for entry in sorted(entries, key=lambda path: (path.is_dir(), path.name)):
+        if entry.suffix == ".py":
+            yield _line(entry.name, entry, depth + 1)
+        elif entry.is_dir() and (entry / "__init__.py").exists():
+            yield from tree(entry, depth + 1)
 
 
 def _line(name: str, file: Path, depth: int) -> str:
@@ -32,8 +32,8 @@ def _line(name: str, file: Path, depth: int) -> str:
 
 def page(text: str) -> str:
     """Return the page with its tree renewed."""
-    before, _, rest = text.partition(BEGIN)
-    after = rest.partition(END)[2]
+    before, _, following = text.partition(BEGIN)
+    after = following.partition(END)[2]
     trees = "\n\n".join("```text\n" + "\n".join(tree(ROOT / package)) + "\n```" for package in PACKAGES)
     return f"{before}{BEGIN}\n\n{trees}\n\n{END}{after}"
 

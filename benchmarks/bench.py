@@ -36,8 +36,8 @@ PACKAGES = ("jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix
 
 def on_gpu() -> bool:
     """Whether JAX will look for one, as far as can be told before it starts."""
-    asked = os.environ.get("JAX_PLATFORMS", "cuda")
-    return "cuda" in asked and any(importlib.util.find_spec(f"jax_cuda{version}_plugin") for version in (12, 13))
+    platforms = os.environ.get("JAX_PLATFORMS", "cuda")
+    return "cuda" in platforms and any(importlib.util.find_spec(f"jax_cuda{version}_plugin") for version in (12, 13))
 
 
 def processor() -> str:
@@ -111,10 +111,10 @@ def main() -> None:
     def of(name: str) -> Iterator[tuple[list[Row], list[str]]]:
         return importlib.import_module(f"benchmarks.bench_{name}").measure(*taken.get(name, (arguments.quick,)))
 
-    for more, said in chain.from_iterable(map(of, parts)):
-        rows += more
-        notes += said
-        for row in more:
+    for part_rows, part_notes in chain.from_iterable(map(of, parts)):
+        rows += part_rows
+        notes += part_notes
+        for row in part_rows:
             console.print(f"{row.what}: {row.result}", style="dim", highlight=False)
     options = (" --quick" if arguments.quick else "") + (f" --only {arguments.only}" if arguments.only else "")
     if arguments.only in (None, "fit"):

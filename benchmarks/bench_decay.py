@@ -30,21 +30,21 @@ def alike(strips: int) -> ReferenceModel:
 
 def error(path: np.ndarray, reference: np.ndarray) -> np.ndarray:
     """Largest difference in surge, heave and pitch over what was released; the coarser of the two says when."""
-    every = (len(reference) - 1) // (len(path) - 1)
-    return np.abs(np.asarray(path) - reference[::every])[:, RELEASED].max(axis=0) / RELEASE[RELEASED]
+    stride = (len(reference) - 1) // (len(path) - 1)
+    return np.abs(np.asarray(path) - reference[::stride])[:, RELEASED].max(axis=0) / RELEASE[RELEASED]
 
 
 def against_numpy(decay: Decay, rounds: int) -> tuple[list[Row], list[str]]:
     """The same decay by plain NumPy and by this package's methods."""
     own = len(decay.model.hull.strips.element)
     like, fine = alike(own), ReferenceModel.from_yaml(PLATFORM)
-    kept: dict[str, np.ndarray] = {}
+    paths: dict[str, np.ndarray] = {}
 
     def plain(name, model):
         start = model.equilibrium() + RELEASE
 
         def call():
-            kept[name] = rk4(model, start, np.zeros(6), STEP, decay.duration)[1]
+            paths[name] = rk4(model, start, np.zeros(6), STEP, decay.duration)[1]
 
         return call
 
@@ -52,7 +52,7 @@ def against_numpy(decay: Decay, rounds: int) -> tuple[list[Row], list[str]]:
         run = decay.compiled(name)
 
         def call():
-            kept[name] = run(decay.arrays, decay.start).block_until_ready()
+            paths[name] = run(decay.arrays, decay.start).block_until_ready()
 
         return call
 
@@ -60,7 +60,7 @@ def against_numpy(decay: Decay, rounds: int) -> tuple[list[Row], list[str]]:
     turns = contest(contestants | {name: package(name) for name in STEPS}, rounds)
     exact = np.asarray(jax.jit(Decay(decay.duration, FINE).cases["tsit5"])(decay.arrays, decay.start))
     plain_exact = rk4(like, like.equilibrium() + RELEASE, np.zeros(6), FINE, decay.duration)[1]
-    one, steps = turns["numpy"], round(decay.duration / STEP)
+    numpy_turns, steps = turns["numpy"], round(decay.duration / STEP)
     length = f"{decay.duration:g} s"
 
     def cost(name):
@@ -69,20 +69,20 @@ def against_numpy(decay: Decay, rounds: int) -> tuple[list[Row], list[str]]:
         return f"{1e3 * median:.3g} ms, {1e6 * median / count:.3g} µs per step"
 
     rows = [
-        Row("Decay against NumPy, RK4, 0.5 s", times(one.over(turns["rk4"])), "60", "43"),
+        Row("Decay against NumPy, RK4, 0.5 s", times(numpy_turns.over(turns["rk4"])), "60", "43"),
         Row("... NumPy with its own strips", times(turns["numpy, fine"].over(turns["rk4"]))),
-        Row("... Tsit5 at 1 s against NumPy's RK4 at 0.5 s", times(one.over(turns["tsit5"]))),
+        Row("... Tsit5 at 1 s against NumPy's RK4 at 0.5 s", times(numpy_turns.over(turns["tsit5"]))),
         Row("Decay by NumPy, RK4, 0.5 s", cost("numpy"), "", "1205 µs per step"),
         Row("Decay by RK4, 0.5 s", cost("rk4"), "", "28 µs per step"),
         Row("Decay by Tsit5, 1 s", cost("tsit5")),
         Row("Decay by diffrax's Tsit5, 1 s", cost("diffrax"), "", "50 µs per step"),
         Row("Decay by Tsit5, simulated time over CPU time", f"{decay.duration / turns['tsit5'].median:.0f}"),
         Row("diffrax over this package's loop, Tsit5, 1 s", times(turns["diffrax"].over(turns["tsit5"]))),
-        Row("Error of NumPy's RK4, 0.5 s", three(error(kept["numpy"], plain_exact))),
-        Row("Error of RK4, 0.5 s", three(error(kept["rk4"], exact)), "", "1e-06 / 1e-04 / 2e-05"),
-        Row("Error of Tsit5, 1 s", three(error(kept["tsit5"], exact))),
-        Row("Error of diffrax's Tsit5, 1 s", three(error(kept["diffrax"], exact)), "", "2e-06 / 5e-06 / 3e-06"),
-        Row("Difference from NumPy with its own strips", three(error(kept["numpy, fine"], exact))),
+        Row("Error of NumPy's RK4, 0.5 s", three(error(paths["numpy"], plain_exact))),
+        Row("Error of RK4, 0.5 s", three(error(paths["rk4"], exact)), "", "1e-06 / 1e-04 / 2e-05"),
+        Row("Error of Tsit5, 1 s", three(error(paths["tsit5"], exact))),
+        Row("Error of diffrax's Tsit5, 1 s", three(error(paths["diffrax"], exact)), "", "2e-06 / 5e-06 / 3e-06"),
+        Row("Difference from NumPy with its own strips", three(error(paths["numpy, fine"], exact))),
     ]
     notes = [
         f"A decay is VolturnUS-S of the campaign volturnus-s-decays as declared, {length} ({steps} steps of 0.5 s), "
@@ -144,17 +144,17 @@ def waiting(duration: float, quick: bool) -> tuple[list[Row], list[str]]:
 
         cold, warm = twice("first")
         rows = [
-            Row(what, f"{found['cpu']:.2g} s CPU, {found['wall']:.2g} s wall" if found else NOT_RUN, goal)
-            for what, found, goal in (
+            Row(what, f"{taken['cpu']:.2g} s CPU, {taken['wall']:.2g} s wall" if taken else NOT_RUN, goal)
+            for what, taken, goal in (
                 ("First result from the cache, import apart", warm, "2 s"),
                 ("First result ever, import apart", cold, ""),
             )
         ]
         cold, warm = (compilations(["tsit5"], duration), {}) if quick else twice(",".join(COMPILED))
         for name, prototype in COMPILED.items():
-            found = f"{cold[name]:.2g} s" if name in cold else NOT_RUN
+            compiled = f"{cold[name]:.2g} s" if name in cold else NOT_RUN
             cached = f", {warm[name]:.2g} s from the cache" if name in warm else ""
-            rows.append(Row(f"Compilation: {name}", found + cached, "", prototype))
+            rows.append(Row(f"Compilation: {name}", compiled + cached, "", prototype))
     notes = [
         "First result: platform file to motion by free_decay in a new process, after the imports. Compilation: CPU "
         "time of tracing, lowering and compiling; from the cache: in another new process, with what the first left in "

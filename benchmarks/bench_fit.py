@@ -49,7 +49,7 @@ def descend(problem: DecayProblem, records) -> Descent:
     """All stages of jaxhydro's calibration of these records."""
     marks: list[tuple[str, float, float, float]] = []
 
-    def mark(stage: str, iteration: int, objective: float, *rest) -> None:
+    def mark(stage: str, iteration: int, objective: float, *unused) -> None:
         marks.append((stage, time.process_time(), objective, fit.decays.share))
 
     fit = fit_of_decays(problem, records, problem.space.start, mark)
@@ -67,61 +67,69 @@ def descend(problem: DecayProblem, records) -> Descent:
 def measure(budget: float, quick: bool, searches: Sequence[str] = tuple(SEARCHES)) -> Iterator[tuple[list[Row], list[str]]]:
     """Least squares, then each population search until within a hundredth of its J, or `budget` seconds of CPU."""
     campaign = load_campaign(CAMPAIGN)
-    some = tuple(record for record in campaign.records if record.id == "heave-1" or not quick)
-    problem, records = set_up_search(dataclasses.replace(campaign, records=some), factor=FACTOR)
+    chosen = tuple(record for record in campaign.records if record.id == "heave-1" or not quick)
+    problem, records = set_up_search(dataclasses.replace(campaign, records=chosen), factor=FACTOR)
 
     first = descend(problem, records)
-    again = first if quick else descend(problem, records)
-    fit, x = again.fit, np.asarray(again.fit.unknowns.shared)[None]
-    judge = Task(problem, records, fit.unknowns.own, Budget(np.inf))
-    judge.batch, together = BATCH, np.tile(x, (BATCH, 1))
-    target = float(judge.simulate(x)[0])
-    judge.simulate(together)  # compiled
-    contestants = {"one": lambda: judge.simulate(x), "batch": lambda: judge.simulate(together)}
+    warm = first if quick else descend(problem, records)
+    fit, x = warm.fit, np.asarray(warm.fit.unknowns.shared)[None]
+    task = Task(problem, records, fit.unknowns.own, Budget(np.inf))
+    task.batch, together = BATCH, np.tile(x, (BATCH, 1))
+    target = float(task.simulate(x)[0])
+    task.simulate(together)  # compiled
+    contestants = {"one": lambda: task.simulate(x), "batch": lambda: task.simulate(together)}
     turns = contest(contestants, 2 if quick else 5)
     budgeted = Budget(budget, objective=CLOSE * target)
-    found = {
+    results = {
         name: search(Task(problem, records, fit.unknowns.own, budgeted), POPULATIONS[name.lower()](), SEED) for name in searches
     }
-    yield report(first, again, target, turns["one"].median, turns["batch"].over(turns["one"]) / BATCH, found)
+    yield report(first, warm, target, turns["one"].median, turns["batch"].over(turns["one"]) / BATCH, results)
 
 
 def report(
-    first: Descent, again: Descent, target: float, one: float, batched: float, searches: dict[str, Found]
+    first: Descent, warm: Descent, target: float, simulation: float, batched: float, searches: dict[str, Found]
 ) -> tuple[list[Row], list[str]]:
     """The rows and what they mean."""
-    records, unknowns = len(again.fit.decays.records), again.fit.unknowns
+    records, unknowns = len(warm.fit.decays.records), warm.fit.unknowns
     tangents = unknowns.shared.shape[0] + unknowns.own.shape[1]
-    every = records * (1 + tangents)
-    iterations, seconds, simulated = again.near
-    whole = float(np.median(again.whole)) if again.whole else again.seconds / again.fit.iterations
+    per_iteration = records * (1 + tangents)
+    iterations, seconds, simulated = warm.near
+    whole = float(np.median(warm.whole)) if warm.whole else warm.seconds / warm.fit.iterations
     rows = [
         Row(
             "Calibration by least squares",
-            f"J {target:.4f}, {again.fit.iterations} iterations, {again.simulated * every:.0f} simulations "
-            f"({again.fit.iterations * every} begun), {again.seconds:.3g} s CPU",
+            f"J {target:.4f}, {warm.fit.iterations} iterations, {warm.simulated * per_iteration:.0f} simulations "
+            f"({warm.fit.iterations * per_iteration} begun), {warm.seconds:.3g} s CPU",
             "",
             "125 simulations, 4 s (three decays)",
         ),
         Row(
             "... until within 1 % of its J",
-            f"{iterations} iterations, {simulated * every:.0f} simulations ({iterations * every} begun), {seconds:.3g} s CPU",
+            f"{iterations} iterations, {simulated * per_iteration:.0f} simulations "
+            f"({iterations * per_iteration} begun), {seconds:.3g} s CPU",
         ),
-        Row("... its compilation", f"{max(0.0, first.seconds - again.seconds):.2g} s CPU"),
-        Row(f"... an iteration ({tangents} tangents)", f"{whole / one:.3g} simulations of all records, by CPU", "6"),
+        Row("... its compilation", f"{max(0.0, first.seconds - warm.seconds):.2g} s CPU"),
+        Row(f"... an iteration ({tangents} tangents)", f"{whole / simulation:.3g} simulations of all records, by CPU", "6"),
     ]
     measured = ("9064 simulations, 195 s (three decays)", "73 times", "49 times")
     prototype = {"DE": [("", text) for text in measured]}
-    for name, found in searches.items():
-        least = "" if found.ended == "reached" else "at least "
-        said = "" if found.ended == "reached" else f", J {found.objective:.4f} where the budget ended"
-        took = f"{found.simulations:.0f} simulations, {found.seconds:.3g} s CPU{said}"
+    for name, result in searches.items():
+        least = "" if result.ended == "reached" else "at least "
+        shortfall = "" if result.ended == "reached" else f", J {result.objective:.4f} where the budget ended"
+        took = f"{result.simulations:.0f} simulations, {result.seconds:.3g} s CPU{shortfall}"
         before = prototype.get(name, [()] * 3)
         rows += [
             Row(SEARCHES[name], took, *before[0]),
-            Row(f"{name} over least squares, simulations", least + times(found.simulations / (simulated * every)), *before[1]),
-            Row(f"{name} over least squares, simulations begun", least + times(found.simulations / (iterations * every))),
-            Row(f"{name} over least squares, CPU", least + times(found.seconds / seconds), *before[2]),
+            Row(
+                f"{name} over least squares, simulations",
+                least + times(result.simulations / (simulated * per_iteration)),
+                *before[1],
+            ),
+            Row(
+                f"{name} over least squares, simulations begun",
+                least + times(result.simulations / (iterations * per_iteration)),
+            ),
+            Row(f"{name} over least squares, CPU", least + times(result.seconds / seconds), *before[2]),
         ]
     notes = [
         f"The calibration is of {records} decay records of volturnus-s-decays, {unknowns.shared.shape[0]} coefficients "

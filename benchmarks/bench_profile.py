@@ -26,10 +26,10 @@ LARGE = 32_000_000  # float64 numbers that no cache holds
 
 def waves(model: Model, sea: AbstractSea, time: jax.Array, state: State) -> Any:
     """Surface, and flow at all strips and ends, where the platform is."""
-    matrix, place, hull = rotation(state.position[3:]), state.position[:3], model.hull
+    matrix, origin, hull = rotation(state.position[3:]), state.position[:3], model.hull
     points = jnp.concatenate([hull.strips.start, hull.ends.position], axis=1)
-    surface = sea.surface(time, place[:2, None] + matrix[:2] @ hull.gauges)
-    return surface, sea.flow(time, place[:, None] + turned(matrix, points), model.cylinders)
+    surface = sea.surface(time, origin[:2, None] + matrix[:2] @ hull.gauges)
+    return surface, sea.flow(time, origin[:, None] + turned(matrix, points), model.cylinders)
 
 
 def loads(model: Model, sea: AbstractSea, time: jax.Array, state: State) -> Any:
@@ -54,8 +54,8 @@ def along(hour: Hour, sea: AbstractSea, part: Part, path: State) -> Callable[[],
         model, sea = eqx.combine(arrays, static)
 
         def body(total, now):
-            found = jax.tree.leaves(eqx.filter(part(model, sea, *now), eqx.is_inexact_array))
-            return total + sum(jnp.sum(one) for one in found), None
+            leaves = jax.tree.leaves(eqx.filter(part(model, sea, *now), eqx.is_inexact_array))
+            return total + sum(jnp.sum(leaf) for leaf in leaves), None
 
         return jax.lax.scan(body, jnp.zeros(()), (instants, path))[0]
 
@@ -67,16 +67,16 @@ def path_of(hour: Hour, sea: AbstractSea) -> State:
     """States at the beginnings of the hour's steps."""
     state = State(hour.rest, jnp.zeros(6), hour.model.rest().memory)
     run = eqx.filter_jit(lambda model, sea: integrate(model, sea, state, jnp.zeros(()), jnp.asarray(STEP), hour.steps, "ab4"))
-    found = run(hour.model, sea)
-    position, rate = found.position[: hour.steps], found.rate[: hour.steps]
+    states = run(hour.model, sea)
+    position, rate = states.position[: hour.steps], states.rate[: hour.steps]
     memory = jax.tree.map(lambda x: jnp.broadcast_to(x, (hour.steps, *x.shape)), state.memory)
     return State(position, jax.vmap(hour.model.body_velocity)(position, rate), memory)
 
 
 def operations_of(text: str) -> int:
     """Number of operations in a program's text, StableHLO or HLO; what only joins or names values is not counted."""
-    found = (_ASSIGNMENT.match(line) for line in text.splitlines())
-    return sum(1 for one in found if one and one["operation"].rpartition(".")[2] not in _NO_OPERATION)
+    assignments = (_ASSIGNMENT.match(line) for line in text.splitlines())
+    return sum(1 for match in assignments if match and match["operation"].rpartition(".")[2] not in _NO_OPERATION)
 
 
 def launched_of(text: str) -> int:
@@ -111,10 +111,10 @@ def floor(hour: Hour, sea: Any, step: float, path: State, rounds: int) -> tuple[
         rounds,
     )
     speed = 2 * SQUARE**3 / turns["product"].median
-    each = turns["exponentials"].median / (50 * few.size)
+    per_exponential = turns["exponentials"].median / (50 * few.size)
     bandwidth = 2 * many.nbytes / turns["copy"].median
     row = sea.series[0].nbytes + path.position[0].nbytes
-    arithmetic, memory = operations / speed + exponentials * each, row / bandwidth
+    arithmetic, memory = operations / speed + exponentials * per_exponential, row / bandwidth
     rows = [
         Row("Arithmetic of a step at the core's speed", f"{1e6 * arithmetic:.3g} µs"),
         Row("Memory of a step at the core's bandwidth", f"{1e6 * memory:.3g} µs"),
@@ -124,9 +124,9 @@ def floor(hour: Hour, sea: Any, step: float, path: State, rounds: int) -> tuple[
     notes = [
         f"The floor: XLA counts {operations:.3g} additions and multiplications and {exponentials:.3g} exponentials "
         f"and the like in a step; this core does {speed / 1e9:.3g}e9 of the former a second in a product of matrices of "
-        f"{SQUARE}, and one of the latter in {1e9 * each:.2g} ns. What no cache holds are {row / 1e3:.3g} kB of the sea's "
-        f"series and the path; a copy moves {bandwidth / 1e9:.3g} GB/s. HLO operations do not depend on the machine's load: "
-        "they grow where the equation of motion does."
+        f"{SQUARE}, and one of the latter in {1e9 * per_exponential:.2g} ns. What no cache holds are {row / 1e3:.3g} kB of the "
+        f"sea's series and the path; a copy moves {bandwidth / 1e9:.3g} GB/s. HLO operations do not depend on the machine's "
+        "load: they grow where the equation of motion does."
     ]
     return rows, notes
 
@@ -139,7 +139,7 @@ def profile(hour: Hour, rounds: int) -> Iterator[tuple[list[Row], list[str]]]:
     runs["whole"] = hour.case(sea, "forward", lambda f: f)
     turns = contest(runs, rounds)
     whole, before, rows = turns["whole"].median, 0.0, []
-    words = {name: said for name, (said, _) in PARTS.items()} | {"whole": "the scheme, and keeping the path"}
+    words = {name: label for name, (label, _) in PARTS.items()} | {"whole": "the scheme, and keeping the path"}
     for name, turn in turns.items():
         took = turn.median - before
         before = turn.median

@@ -46,10 +46,8 @@ class Hour:
         return IrregularSea(self.components, self.model.environment, 2 if order == 2 else 1, "vertical")
 
     def prepared(self, order: int) -> Any:
-        found = self.sea(order).prepared(
-            self.model.hull.extremities(), self.model.cylinders, clock("ab4", 0.0, STEP, self.steps)
-        )
-        return jax.block_until_ready(found)
+        sea = self.sea(order).prepared(self.model.hull.extremities(), self.model.cylinders, clock("ab4", 0.0, STEP, self.steps))
+        return jax.block_until_ready(sea)
 
     def case(self, sea: Any, adjoint: str, differentiate: Callable[[Callable], Callable]) -> Callable[[], Any]:
         """A compiled call, and `memory` of it in bytes."""
@@ -107,8 +105,8 @@ def speed(hour: Hour, rounds: int, seconds: float) -> tuple[list[Row], list[str]
     pairs.rate(0.0, state := state_of(begin))
     begun = time.process_time()
     pairs.rate(1.0, state)
-    each = time.process_time() - begun
-    second = each * hour.steps
+    per_step = time.process_time() - begun
+    second = per_step * hour.steps
     count, strips = hour.components.omega.size, len(hour.model.hull.strips.element)
     ratio = share * turns["numpy"].over(turns["order 1"])
     rows = [
@@ -118,7 +116,7 @@ def speed(hour: Hour, rounds: int, seconds: float) -> tuple[list[Row], list[str]
         Row("Sea of order 2 by this package", f"{1e6 * hour_of['order 2'] / hour.steps:.3g} µs per step", "", "38 µs"),
         Row("Sea of order 1 by this package", f"{1e6 * hour_of['order 1'] / hour.steps:.3g} µs per step"),
         Row("Sea of order 1 by NumPy", f"{1e6 * hour_of['numpy'] / hour.steps:.3g} µs per step", "", "8800 µs per step"),
-        Row("Sea of order 2 by NumPy", f"{each:.3g} s per step (one step taken)"),
+        Row("Sea of order 2 by NumPy", f"{per_step:.3g} s per step (one step taken)"),
     ]
     notes = [
         f"A sea is JONSWAP Hs {HEIGHT} m, Tp {PERIOD} s, {count} components from {LOW} to {CUTOFF} Hz, {hour.duration:g} s, "

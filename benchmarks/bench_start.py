@@ -74,21 +74,21 @@ def measured(words: list[str], sources: Path, cache: Path) -> dict[str, Any]:
 
 def rows_of(name: str, words: list[str], sources: dict[str, Path], rounds: int) -> list[tuple[str, ...]]:
     """Medians of a command, for each checkout, with an empty and with a full cache."""
-    found: dict[tuple[str, str], list[dict[str, Any]]] = {}
+    measurements: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for _ in range(rounds):
         for label, folder in sources.items():
             cache = Path(tempfile.mkdtemp())
             try:
                 for state in ("empty", "full"):
-                    found.setdefault((label, state), []).append(measured(words, folder, cache))
+                    measurements.setdefault((label, state), []).append(measured(words, folder, cache))
             finally:
                 shutil.rmtree(cache)
     rows = []
-    for (label, state), runs in found.items():
+    for (label, state), runs in measurements.items():
         middle = {key: statistics.median(run[key] for run in runs) for key in runs[0]}
         work = middle["trace_s"] + middle["lower_s"]
         seconds = (work, middle["compile_s"], middle["cpu_s"], middle["wall_s"])
-        rows.append((f"{name}{label}", state, f"{middle['programs']:.0f}", *(f"{each:.1f}" for each in seconds)))
+        rows.append((f"{name}{label}", state, f"{middle['programs']:.0f}", *(f"{value:.1f}" for value in seconds)))
     return rows
 
 
@@ -98,19 +98,19 @@ def main() -> None:
     parser.add_argument("--before", type=Path, help="another checkout, which takes turns with this one")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--out", type=Path, default=RESULTS)
-    asked = parser.parse_args()
+    arguments = parser.parse_args()
     rows = []
     for name, words in (COMMANDS | (OF_ROLL_DECAY if ROLL_DECAY.is_dir() else {})).items():
         sources = {"": ROOT}
-        if asked.before is not None and name not in SKIPPED_BEFORE:
-            sources = {", before": asked.before, ", now": ROOT}
-        rows += rows_of(name, words, sources, asked.rounds)
+        if arguments.before is not None and name not in SKIPPED_BEFORE:
+            sources = {", before": arguments.before, ", now": ROOT}
+        rows += rows_of(name, words, sources, arguments.rounds)
         print(*rows[-2 * len(sources) :], sep="\n", flush=True)
     when = datetime.date.today().isoformat()
     lines = [
         "# Start-up of commands",
         "",
-        f"`python -m benchmarks.bench_start --rounds {asked.rounds}`, {when}. Seconds are medians of the rounds.",
+        f"`python -m benchmarks.bench_start --rounds {arguments.rounds}`, {when}. Seconds are medians of the rounds.",
         "CPU time is that of the whole process, imports included. *Full* is the compilation cache that the first run left.",
         "Programs that come from the cache are counted.",
         "",
@@ -121,7 +121,7 @@ def main() -> None:
         *(f"| {' | '.join(row)} |" for row in rows),
         "",
     ]
-    asked.out.write_text("\n".join(lines), encoding="utf-8")
+    arguments.out.write_text("\n".join(lines), encoding="utf-8")
 
 
 if __name__ == "__main__":

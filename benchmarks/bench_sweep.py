@@ -86,9 +86,9 @@ def growth(rounds: int, durations: Sequence[float], elements: Sequence[int]) -> 
     turns = contest(runs, rounds)
     grids = {"strips": strips, "duration": durations, "components": [repeat_period(d) * (CUTOFF - LOW) for d in durations]}
     for name, of in (("strips", "a simulation"), ("duration", "a simulation"), ("components", "second order made ready")):
-        found = [turns[f"{name} {i}"].median for i in range(len(grids[name]))]
+        medians = [turns[f"{name} {i}"].median for i in range(len(grids[name]))]
         sizes = f"{min(grids[name]):.0f} to {max(grids[name]):.0f}"
-        rows.append(Row(f"Growth of {of} with {name}, exponent", f"{exponent(grids[name], found)} ({sizes})"))
+        rows.append(Row(f"Growth of {of} with {name}, exponent", f"{exponent(grids[name], medians)} ({sizes})"))
     return rows, ["Growth: CPU time as a power of size, by least squares of logarithms; components grow with the duration."]
 
 
@@ -128,8 +128,8 @@ def waiting() -> tuple[list[Row], list[str]]:
         def run() -> tuple[str, str]:
             command = [sys.executable, "-c", FIRST]
             done = subprocess.run(command, cwd=ROOT, env=environment, check=True, stdout=subprocess.PIPE, text=True)
-            first, again = json.loads(done.stdout)
-            apart = [one - other for one, other in zip(first, again)]
+            first, second = json.loads(done.stdout)
+            apart = [first_time - second_time for first_time, second_time in zip(first, second)]
             return tuple(f"{cpu:.2g} s CPU, {wall:.2g} s wall" for cpu, wall in (first, apart))  # type: ignore[return-value]
 
         ever, cached = run(), run()

@@ -27,9 +27,9 @@ class Turns(NamedTuple):
     def median(self) -> float:
         return statistics.median(self.seconds)
 
-    def over(self, other: "Turns") -> float:
+    def over(self, contestant: "Turns") -> float:
         """How many times as long as another: the median over rounds, so that both had the same neighbours."""
-        return statistics.median(a / b for a, b in zip(self.seconds, other.seconds, strict=True))
+        return statistics.median(a / b for a, b in zip(self.seconds, contestant.seconds, strict=True))
 
 
 def pin() -> None:

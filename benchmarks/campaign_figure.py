@@ -24,8 +24,15 @@ REFERENCE, TRACKED, GAUGE = (0.0, 0.0), (3.4, 1.5), -7.0  # (x, z), (x, z), x
 
 def arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], colour: str, width: float = 1.6) -> None:
     """Draw an arrow from start to end."""
-    look: dict[str, Any] = {"arrowstyle": "-|>", "color": colour, "lw": width, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11}
-    ax.annotate("", xy=end, xytext=start, arrowprops=look, zorder=8)
+    style: dict[str, Any] = {
+        "arrowstyle": "-|>",
+        "color": colour,
+        "lw": width,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "mutation_scale": 11,
+    }
+    ax.annotate("", xy=end, xytext=start, arrowprops=style, zorder=8)
 
 
 def elevation(x: np.ndarray) -> np.ndarray:
@@ -66,12 +73,12 @@ def draw_platform(ax: Axes) -> None:
         ax.plot(side * x, sag, color=LINES, lw=1.4, zorder=3)
         ax.plot([side * 7.2], [BED + 0.05], "s", color=LINES, ms=5, zorder=3)
     ax.text(5.6, -3.3, "mooring line", color=LINES)
-    look: dict[str, Any] = {"facecolor": STEEL, "edgecolor": EDGE, "lw": 1.0, "zorder": 4}
-    ax.add_patch(Rectangle((-4.1, -2.1), 8.2, 0.55, **look))  # pontoon
+    steel: dict[str, Any] = {"facecolor": STEEL, "edgecolor": EDGE, "lw": 1.0, "zorder": 4}
+    ax.add_patch(Rectangle((-4.1, -2.1), 8.2, 0.55, **steel))  # pontoon
     for middle, width in ((-3.4, 1.4), (0.0, 1.2), (3.4, 1.4)):
-        ax.add_patch(Rectangle((middle - width / 2, -2.1), width, 3.2, **look))
-    ax.add_patch(Polygon([(-0.4, 1.1), (0.4, 1.1), (0.22, 5.9), (-0.22, 5.9)], **look))
-    ax.add_patch(Rectangle((-0.55, 5.55), 1.3, 0.5, **look))
+        ax.add_patch(Rectangle((middle - width / 2, -2.1), width, 3.2, **steel))
+    ax.add_patch(Polygon([(-0.4, 1.1), (0.4, 1.1), (0.22, 5.9), (-0.22, 5.9)], **steel))
+    ax.add_patch(Rectangle((-0.55, 5.55), 1.3, 0.5, **steel))
 
 
 def draw_axes(ax: Axes) -> None:
@@ -103,10 +110,10 @@ def draw_sensors(ax: Axes) -> None:
     """Draw the wave gauge with its position, and the tracked point with its camera."""
     ax.plot([GAUGE, GAUGE], [-1.3, 2.0], color=MEASURED, lw=2.0, zorder=5)
     ax.text(GAUGE, 2.15, "wave gauge", color=MEASURED, ha="center", va="bottom", fontweight="bold")
-    look: dict[str, Any] = {"arrowstyle": "<|-|>", "color": GREY, "lw": 0.9, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 8}
+    style: dict[str, Any] = {"arrowstyle": "<|-|>", "color": GREY, "lw": 0.9, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 8}
     ax.plot([0, 0], [-4.45, -4.05], color=GREY, lw=0.9, zorder=3)
     ax.plot([GAUGE, GAUGE], [-4.45, -1.3], color=GREY, lw=0.9, ls=":", zorder=3)
-    ax.annotate("", xy=(GAUGE, -4.25), xytext=(0, -4.25), arrowprops=look, zorder=5)
+    ax.annotate("", xy=(GAUGE, -4.25), xytext=(0, -4.25), arrowprops=style, zorder=5)
     ax.text(-2.5, -4.4, "position [x, y], here x < 0", color=MEASURED, ha="center", va="top", zorder=9)
     ax.plot([TRACKED[0], TRACKED[0]], [1.1, 1.5], color=MEASURED, lw=1.2, zorder=5)
     ax.plot([TRACKED[0], 8.55], [TRACKED[1], 3.5], color=MEASURED, lw=0.8, ls=(0, (2, 2)), zorder=5)

@@ -60,15 +60,15 @@ def main() -> None:
     out = arguments.parse_args().out
     cpt.set_logging("ERROR")
     solver = cpt.BEMSolver(method="direct")
-    found = []
+    by_mesh = []
     for around, down in MESHES:
         body = cylinder(around, down)
-        found.append(np.array([coefficient(body, solver, ka) for ka in KA]))
-        print(around, down, np.round(np.abs(found[-1]), 5), np.round(-np.degrees(np.angle(found[-1])), 4), sep="\n")
-    first = extrapolated(found[0], found[1], MESHES[1][0] / MESHES[0][0])
-    last = extrapolated(found[1], found[2], MESHES[2][0] / MESHES[1][0])
+        by_mesh.append(np.array([coefficient(body, solver, ka) for ka in KA]))
+        print(around, down, np.round(np.abs(by_mesh[-1]), 5), np.round(-np.degrees(np.angle(by_mesh[-1])), 4), sep="\n")
+    first = extrapolated(by_mesh[0], by_mesh[1], MESHES[1][0] / MESHES[0][0])
+    last = extrapolated(by_mesh[1], by_mesh[2], MESHES[2][0] / MESHES[1][0])
     print("between extrapolations", np.max(np.abs(last / first - 1)))
-    print("from the last to the finest mesh", np.max(np.abs(found[2] / last - 1)))
+    print("from the last to the finest mesh", np.max(np.abs(by_mesh[2] / last - 1)))
     lines = [
         f"# made by `python benchmarks/make_diffraction_table.py` with Capytaine {cpt.__version__}; do not edit",
         f"# vertical cylinder from bed to surface, radius {RADIUS} m, depth {DEPTH} m; extrapolated from {MESHES[1:]} panels",

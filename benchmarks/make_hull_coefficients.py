@@ -127,12 +127,12 @@ def rigid(platform: dict) -> tuple[np.ndarray, np.ndarray]:
 
 def moored(platform: dict) -> np.ndarray:
     """Stiffness of the mooring."""
-    given, found = platform["mooring"]["stiffness"], np.zeros((6, 6))
+    given, stiffness = platform["mooring"]["stiffness"], np.zeros((6, 6))
     for key, value in given.items():
         i, j = int(key[1]) - 1, int(key[2]) - 1
-        found[i, j] = value
-        found[j, i] = given.get(f"C{j + 1}{i + 1}", value)
-    return found
+        stiffness[i, j] = value
+        stiffness[j, i] = given.get(f"C{j + 1}{i + 1}", value)
+    return stiffness
 
 
 def solved(name: str) -> dict:
@@ -147,15 +147,18 @@ def solved(name: str) -> dict:
 
     across = name in HEADINGS
     names = ("sway", "heave", "roll") if across else ("surge", "heave", "pitch")
-    kept = [1, 2, 3] if across else [0, 2, 4]
-    part = np.ix_(kept, kept)
+    modes = [1, 2, 3] if across else [0, 2, 4]
+    part = np.ix_(modes, modes)
     mass, stiffness = mass[part], stiffness[part]
 
     def radiation(omega: float) -> tuple[np.ndarray, np.ndarray]:
         at = {**water, "water_depth": depth if omega > 0 else math.inf}  # Capytaine's tables end at kh = 0.1
-        some = [solver.solve(cpt.RadiationProblem(radiating_dof=DOFS[j], omega=omega, **at), keep_details=False) for j in kept]
+        solutions = [
+            solver.solve(cpt.RadiationProblem(radiating_dof=DOFS[j], omega=omega, **at), keep_details=False) for j in modes
+        ]
         added, damping = (
-            [[getattr(one, what)[DOFS[i]] for one in some] for i in kept] for what in ("added_masses", "radiation_dampings")
+            [[getattr(solution, what)[DOFS[i]] for solution in solutions] for i in modes]
+            for what in ("added_masses", "radiation_dampings")
         )
         return np.array(added), np.array(damping)
 
@@ -172,7 +175,7 @@ def solved(name: str) -> dict:
     omega = 2 * math.pi / period
     problem = cpt.DiffractionProblem(omega=omega, wave_direction=heading, **water)
     scattered, incident = solver.solve(problem, keep_details=False).forces, froude_krylov_force(problem)
-    force = np.array([scattered[DOFS[i]] + incident[DOFS[i]] for i in kept])
+    force = np.array([scattered[DOFS[i]] + incident[DOFS[i]] for i in modes])
     added, damping = radiation(omega)
     motion = np.linalg.solve(stiffness - omega**2 * (mass + added) - 1j * omega * damping, force)
     return {
@@ -197,12 +200,12 @@ def main() -> None:
     arguments.add_argument("--only", nargs="+", default=list(WAVES))
     options = arguments.parse_args()
     cpt.set_logging("ERROR")
-    found = json.loads(options.out.read_text("utf-8")) if options.out.exists() else {}
-    found["made_by"] = f"python benchmarks/make_hull_coefficients.py, Capytaine {cpt.__version__}"
+    results = json.loads(options.out.read_text("utf-8")) if options.out.exists() else {}
+    results["made_by"] = f"python benchmarks/make_hull_coefficients.py, Capytaine {cpt.__version__}"
     for name in options.only:
-        found[name] = solved(name)
-        print(name, json.dumps(found[name]["periods"]), flush=True)
-        options.out.write_text(json.dumps(found, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+        results[name] = solved(name)
+        print(name, json.dumps(results[name]["periods"]), flush=True)
+        options.out.write_text(json.dumps(results, indent=1, sort_keys=True) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -87,7 +87,7 @@ def at_rest(text: str, fairleads: np.ndarray, segments: int) -> dict[str, Any]:
             if time >= DURATION - LAST:
                 forces.append([moordyn.GetLineNodeForce(line, segments) for line in lines])
         inner = range(1, segments)
-        found = {
+        state = {
             "fairlead": np.array(forces[-1]).tolist(),
             "anchor": [list(moordyn.GetLineNodeForce(line, 0)) for line in lines],
             "fairlead_segment": [moordyn.GetLineFairTen(line) for line in lines],
@@ -98,7 +98,7 @@ def at_rest(text: str, fairleads: np.ndarray, segments: int) -> dict[str, Any]:
         moordyn.Close(system)
     size = np.linalg.norm(forces[-1], axis=-1)
     changes = np.linalg.norm(np.array(forces) - np.array(forces[-1]), axis=-1) / size
-    return found | {"changes": float(changes.max())}
+    return state | {"changes": float(changes.max())}
 
 
 def main() -> None:
@@ -109,12 +109,12 @@ def main() -> None:
     text, mooring = exported()
     fairleads = np.array([fairlead for line in mooring.lines for _, fairlead in line.copies()])
     results: list[dict[str, Any]] = json.loads(given.out.read_text("utf-8")) if given.out.exists() else []
-    done = {(one["offset"], one["segments"], one["bed_stiffness"]) for one in results}
-    for offset, segments, bed in (one for one in RUNS if one not in done):
-        found = at_rest(with_numerics(text, segments, bed), fairleads + np.array([offset, 0.0, 0.0]), segments)
-        results.append({"offset": offset, "segments": segments, "bed_stiffness": bed} | found)
-        total = np.sum(found["fairlead"], axis=0)
-        print(f"{offset:g} m, {segments} segments: {total[0] / 1e3:.2f} kN, changes {found['changes']:.1e}", flush=True)
+    done = {(result["offset"], result["segments"], result["bed_stiffness"]) for result in results}
+    for offset, segments, bed in (case for case in RUNS if case not in done):
+        state = at_rest(with_numerics(text, segments, bed), fairleads + np.array([offset, 0.0, 0.0]), segments)
+        results.append({"offset": offset, "segments": segments, "bed_stiffness": bed} | state)
+        total = np.sum(state["fairlead"], axis=0)
+        print(f"{offset:g} m, {segments} segments: {total[0] / 1e3:.2f} kN, changes {state['changes']:.1e}", flush=True)
         given.out.parent.mkdir(exist_ok=True)
         given.out.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     print(f"{given.out}: {len(results)} runs")

@@ -171,4 +171,4 @@ class DifferentialEvolution(PopulationSearch):
         )
 
 
-POPULATIONS: dict[str, type[PopulationSearch]] = {one.name: one for one in (CMAES, DifferentialEvolution, Genetic)}
+POPULATIONS: dict[str, type[PopulationSearch]] = {method.name: method for method in (CMAES, DifferentialEvolution, Genetic)}

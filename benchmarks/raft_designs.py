@@ -46,41 +46,41 @@ def model_of(conversion: Conversion) -> Model:
 
 def stiffness_of_lines(model: Model) -> list[list[float]] | None:
     """Stiffness (6, 6) of catenaries at the reference position; None without them."""
-    others = tuple(load for load in model.loads if not isinstance(load, jh.loads.CatenaryLines))
-    if len(others) == len(model.loads):
+    loads = tuple(load for load in model.loads if not isinstance(load, jh.loads.CatenaryLines))
+    if len(loads) == len(model.loads):
         return None
-    without = eqx.tree_at(lambda m: m.loads, model, others)
-    whole, rest = (jax.jacfwd(lambda q, m=m: m.force_at_rest(q))(jnp.zeros(6)) for m in (model, without))
-    return (-np.asarray(whole - rest)).tolist()
+    without = eqx.tree_at(lambda m: m.loads, model, loads)
+    whole, without_lines = (jax.jacfwd(lambda q, m=m: m.force_at_rest(q))(jnp.zeros(6)) for m in (model, without))
+    return (-np.asarray(whole - without_lines)).tolist()
 
 
 def periods(mass: np.ndarray, stiffness: np.ndarray) -> dict[str, float]:
     """Natural periods (s) of the six modes, each under the motion that is largest in it, rotations at 50 m."""
     values, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
     weight = np.abs(vectors) * np.array([1, 1, 1, 50, 50, 50])[:, None]
-    found: dict[str, float] = {}
+    by_motion: dict[str, float] = {}
     for i in np.argsort(-weight.max(axis=0) / weight.sum(axis=0)):
-        dof = next(jh.DOFS[j] for j in np.argsort(-weight[:, i]) if jh.DOFS[j] not in found)
-        found[dof] = 2 * math.pi / math.sqrt(values[i].real) if values[i].real > 0 else math.nan
-    return found
+        dof = next(jh.DOFS[j] for j in np.argsort(-weight[:, i]) if jh.DOFS[j] not in by_motion)
+        by_motion[dof] = 2 * math.pi / math.sqrt(values[i].real) if values[i].real > 0 else math.nan
+    return by_motion
 
 
 def worked_out(model: Model, at_rest: bool) -> dict[str, Any]:
     """Mass, hydrostatics, added mass and periods of a model at its reference position; and `at_rest`, in equilibrium."""
     body, weight = model.body, model.environment.density * model.environment.gravity
     mass, stiffness = (np.asarray(x) for x in linearised(model, jnp.zeros(6)))
-    rest = jh.equilibrium(model) if at_rest else None
+    equilibrium = jh.equilibrium(model) if at_rest else None
     own = next(load for load in model.loads if isinstance(load, jh.loads.Buoyancy)).upright(weight)
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         "M_struc": np.asarray(body.mass_matrix()).tolist(),
         "added_mass": (mass - np.asarray(body.mass_matrix())).tolist(),
     }
-    found |= {"volume": own["displaced_volume"], "stiffness": stiffness.tolist(), "periods": periods(mass, stiffness)}
-    found["unbalanced"] = np.asarray(model.force_at_rest(jnp.zeros(6))).tolist()
-    if rest is not None:
-        found["rest"] = np.asarray(rest).tolist()
-        found["periods_at_rest"] = periods(*(np.asarray(x) for x in linearised(model, rest)))
-    return found
+    values |= {"volume": own["displaced_volume"], "stiffness": stiffness.tolist(), "periods": periods(mass, stiffness)}
+    values["unbalanced"] = np.asarray(model.force_at_rest(jnp.zeros(6))).tolist()
+    if equilibrium is not None:
+        values["rest"] = np.asarray(equilibrium).tolist()
+        values["periods_at_rest"] = periods(*(np.asarray(x) for x in linearised(model, equilibrium)))
+    return values
 
 
 def of_raft(statics: dict[str, Any]) -> dict[str, float]:
@@ -91,11 +91,11 @@ def of_raft(statics: dict[str, Any]) -> dict[str, float]:
     return periods(np.array(statics["M_struc"]) + np.array(statics["A_hydro_morison"]), stiffness)
 
 
-def ratio(ours: float, theirs: float) -> str:
+def ratio(ours: float, reference: float) -> str:
     """A relative difference as people read it."""
-    if not (math.isfinite(ours) and math.isfinite(theirs)) or abs(theirs) < 1e-9:
+    if not (math.isfinite(ours) and math.isfinite(reference)) or abs(reference) < 1e-9:
         return "-"
-    return f"{100 * (ours / theirs - 1):+.2f} %" if abs(ours / theirs - 1) >= 5e-5 else "< 0.005 %"
+    return f"{100 * (ours / reference - 1):+.2f} %" if abs(ours / reference - 1) >= 5e-5 else "< 0.005 %"
 
 
 def table(head: tuple[str, ...], rows: list[list[str]]) -> str:
@@ -106,30 +106,30 @@ def table(head: tuple[str, ...], rows: list[list[str]]) -> str:
 def text(results: dict[str, Any], raft: dict[str, Any]) -> str:
     """The page from the raw results alone."""
     statics, modes, hands = [], [], []
-    for name, found in results.items():
-        own, theirs = found["converted"], raft.get(name)
+    for name, design in results.items():
+        own, raft_design = design["converted"], raft.get(name)
         m, a = np.array(own["M_struc"]), np.array(own["added_mass"])
         title = f"{Path(name).parent.name}/{Path(name).stem}"
-        if theirs:
-            other, added = np.array(theirs["M_struc"]), np.array(theirs["A_hydro_morison"])
-            hydro = np.array(theirs["C_hydro"]) + np.array(theirs["C_struc"])
-            moor = np.array(found["mooring_stiffness"] or np.zeros((6, 6)))
-            yaw = found["yaw_stiffness"] * np.eye(6)[5][:, None] * np.eye(6)[5]
+        if raft_design:
+            structural, added = np.array(raft_design["M_struc"]), np.array(raft_design["A_hydro_morison"])
+            hydro = np.array(raft_design["C_hydro"]) + np.array(raft_design["C_struc"])
+            moor = np.array(design["mooring_stiffness"] or np.zeros((6, 6)))
+            yaw = design["yaw_stiffness"] * np.eye(6)[5][:, None] * np.eye(6)[5]
             floating = np.array(own["stiffness"]) - moor - yaw
-            row = [title, f"{m[0, 0] / 1e3:.2f}", ratio(m[0, 0], other[0, 0])]
-            row += [ratio(m[i, i], other[i, i]) for i in (3, 5)]
-            row += [f"{own['volume']:.2f}", ratio(own["volume"], theirs["volume"])]
+            row = [title, f"{m[0, 0] / 1e3:.2f}", ratio(m[0, 0], structural[0, 0])]
+            row += [ratio(m[i, i], structural[i, i]) for i in (3, 5)]
+            row += [f"{own['volume']:.2f}", ratio(own["volume"], raft_design["volume"])]
             row += [ratio(floating[i, i], hydro[i, i]) for i in (2, 4)]
             row += [ratio(a[i, i], added[i, i]) for i in (0, 2, 4)]
             statics.append(row)
-            expected = of_raft(theirs)
+            expected = of_raft(raft_design)
             row = [title]
             for dof in SHOWN:
                 row += [f"{own['periods'][dof]:.2f}", ratio(own["periods"][dof], expected[dof])]
-            lines = np.array(theirs.get("mooring_stiffness", np.zeros((6, 6))))
+            lines = np.array(raft_design.get("mooring_stiffness", np.zeros((6, 6))))
             row += [ratio(moor[i, i], lines[i, i]) for i in (0, 2, 4)]
             modes.append([*row, f"{own['unbalanced'][2] / (9.81 * m[0, 0]):+.4f}"])
-        if hand := found.get("built_in"):
+        if hand := design.get("built_in"):
             for dof in SHOWN:
                 ours, by_hand = own["periods_at_rest"][dof], hand["periods_at_rest"][dof]
                 hands.append([title, f"{dof} period (s)", f"{ours:.2f}", f"{by_hand:.2f}", ratio(ours, by_hand)])
@@ -150,8 +150,8 @@ def text(results: dict[str, Any], raft: dict[str, Any]) -> str:
     )
     treated = [
         f"- {Path(name).parent.name}/{Path(name).stem}: "
-        + ", ".join(f"{count} {word}" for word, count in Counter(item["treatment"] for item in found["items"]).items())
-        for name, found in results.items()
+        + ", ".join(f"{count} {word}" for word, count in Counter(item["treatment"] for item in design["items"]).items())
+        for name, design in results.items()
     ]
     return (
         "\n\n".join(
@@ -196,13 +196,13 @@ def main() -> None:
     for name in given.only or raft:
         conversion = read_raft_design(given.folder / name)
         model = model_of(conversion)
-        found: dict[str, Any] = {"converted": worked_out(model, name in BUILT_IN)}
-        found["mooring_stiffness"] = stiffness_of_lines(model)
-        found["yaw_stiffness"] = conversion.platform.get("stiffness", {}).get("C66", 0.0)
-        found["items"] = [{"source": i.source, "treatment": i.treatment.value, "meaning": i.meaning} for i in conversion.items]
+        design: dict[str, Any] = {"converted": worked_out(model, name in BUILT_IN)}
+        design["mooring_stiffness"] = stiffness_of_lines(model)
+        design["yaw_stiffness"] = conversion.platform.get("stiffness", {}).get("C66", 0.0)
+        design["items"] = [{"source": i.source, "treatment": i.treatment.value, "meaning": i.meaning} for i in conversion.items]
         if name in BUILT_IN:
-            found["built_in"] = worked_out(jh.build(jh.load_platform(BUILT_IN[name])), True)
-        results[name] = found
+            design["built_in"] = worked_out(jh.build(jh.load_platform(BUILT_IN[name])), True)
+        results[name] = design
         print(name, flush=True)
         RAW.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     TEXT.write_text(text(results, raft), encoding="utf-8")

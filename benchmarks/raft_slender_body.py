@@ -37,10 +37,10 @@ CASES: dict[str, dict[str, Any]] = {
 
 def motions(case: dict[str, Any]) -> np.ndarray:
     """Complex amplitudes (m, rad) of the six motions per metre of both waves, (6, 2)."""
-    found, order = np.zeros((6, 2), complex), ("surge", "sway", "heave", "roll", "pitch", "yaw")
+    amplitudes, order = np.zeros((6, 2), complex), ("surge", "sway", "heave", "roll", "pitch", "yaw")
     for motion, values in case.get("motion", {}).items():
-        found[order.index(motion)] = values
-    return found
+        amplitudes[order.index(motion)] = values
+    return amplitudes
 
 
 def member_class(folder: Path) -> Any:
@@ -77,9 +77,9 @@ def forces(Member: Any, case: dict[str, Any]) -> np.ndarray:
     member.setPosition()
     member.calcHydroConstants(rho=DENSITY, g=GRAVITY)
     omega = 2 * np.pi * np.array(FREQUENCY)
-    wavenumber = np.array([waveNumber(one, DEPTH, e=1e-12) for one in omega])
-    found = member.calcQTF_slenderBody(motions(case), 0.0, omega, wavenumber, DEPTH, rho=DENSITY, g=GRAVITY)
-    return 2 * found[0, 1]
+    wavenumber = np.array([waveNumber(w, DEPTH, e=1e-12) for w in omega])
+    qtf = member.calcQTF_slenderBody(motions(case), 0.0, omega, wavenumber, DEPTH, rho=DENSITY, g=GRAVITY)
+    return 2 * qtf[0, 1]
 
 
 def main() -> None:

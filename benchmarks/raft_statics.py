@@ -55,14 +55,14 @@ def statics(path: Path) -> dict[str, Any]:
         unit.setPosition(np.zeros(unit.nDOF))
         unit.calcStatics()
         unit.calcHydroConstants()
-        found = {key: np.asarray(getattr(unit, key)).tolist() for key in MATRICES}
-        found |= {"volume": float(unit.V), "yaw_stiffness": float(unit.yawstiff)}
+        values = {key: np.asarray(getattr(unit, key)).tolist() for key in MATRICES}
+        values |= {"volume": float(unit.V), "yaw_stiffness": float(unit.yawstiff)}
         if unit.ms:
             unit.ms.bodyList[0].setPosition(np.zeros(6))
             unit.ms.solveEquilibrium()
-            found["mooring_force"] = unit.ms.getForces(DOFtype="coupled", lines_only=True).tolist()
-            found["mooring_stiffness"] = unit.ms.getCoupledStiffnessA(lines_only=True).tolist()
-    return found
+            values["mooring_force"] = unit.ms.getForces(DOFtype="coupled", lines_only=True).tolist()
+            values["mooring_stiffness"] = unit.ms.getCoupledStiffnessA(lines_only=True).tolist()
+    return values
 
 
 def main() -> None:

@@ -36,15 +36,15 @@ def draw(folder: Path, path: Path) -> None:
     """
     low, high = bands("surge", PEAK_PERIOD)["low_frequency"]
     with xr.open_dataset(folder / "simulated.nc") as motion, style():
-        here = motion.sel(test=TEST, channel="surge")
-        time = here.time.values - here.time.values[0]
+        motions = motion.sel(test=TEST, channel="surge")
+        time = motions.time.values - motions.time.values[0]
         figure = Figure(figsize=(6.0, 2.7), layout="constrained")
         FigureCanvasAgg(figure)
         ax = figure.subplots()
         for kind, (colour, width, label) in LOOKS.items():
-            values = within(here[kind].values, low, high, float(np.diff(time[:2])[0]))
-            some = time[: len(values)] < SHOWN
-            ax.plot(time[: len(values)][some], values[some], color=colour, lw=width, label=label)
+            values = within(motions[kind].values, low, high, float(np.diff(time[:2])[0]))
+            shown = time[: len(values)] < SHOWN
+            ax.plot(time[: len(values)][shown], values[shown], color=colour, lw=width, label=label)
         ax.set_xlabel("Time (s)")
         ax.set_ylabel("Slow surge (m)")
         ax.margins(x=0.0)

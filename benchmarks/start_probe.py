@@ -37,7 +37,7 @@ def main(words: list[str]) -> None:
     except SystemExit as stop:
         if stop.code:
             raise
-    found = {
+    summary = {
         "programs": counts["backend_compile_duration"],
         "trace_s": seconds["jaxpr_trace_duration"],
         "lower_s": seconds["jaxpr_to_mlir_module_duration"],
@@ -45,7 +45,7 @@ def main(words: list[str]) -> None:
         "import_cpu_s": imported,
         "cpu_s": time.process_time(),
     }
-    print(json.dumps(found))
+    print(json.dumps(summary))
 
 
 if __name__ == "__main__":

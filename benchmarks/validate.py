@@ -116,19 +116,19 @@ def command(name: str, options: argparse.Namespace) -> str:
     return f"python -m benchmarks.validate --only {name}{counts.get(name, '')}"
 
 
-def written(name: str, found: Section, options: argparse.Namespace) -> str:
+def written(name: str, result: Section, options: argparse.Namespace) -> str:
     """A section as it stands on the page, its figures copied beside it."""
-    lines = [f"## {found.title}", "", f"`{command(name, options)}`", ""]
+    lines = [f"## {result.title}", "", f"`{command(name, options)}`", ""]
     if name in common.stale:
         lines += ["*From runs of earlier sources, wholly or in part.*", ""]
-    lines += [wrapped(found.text.strip()), ""]
+    lines += [wrapped(result.text.strip()), ""]
     folder = PAGE.parent / "figures"
     folder.mkdir(parents=True, exist_ok=True)
-    for path in found.figures:
+    for path in result.figures:
         if path.exists() or not common.text_only:  # a figure of a run stays as it is on the page
             shutil.copyfile(path, folder / path.name)
         lines += [f"![{path.stem.replace('-', ' ')}](figures/{path.name})", ""]
-    lines += [f"Falls short: {words}.\n" for words in found.short]
+    lines += [f"Falls short: {words}.\n" for words in result.short]
     return "\n".join(lines)
 
 
@@ -171,8 +171,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seeds", type=int, default=20, help="seeds of noise (default 20)")
     parser.add_argument("--starts", type=int, default=20, help="far starts (default 20)")
-    every = len(list(diagnoses.cases()))
-    parser.add_argument("--diagnoses", type=int, default=every, help="campaigns to diagnose at most (default: all)")
+    campaigns = len(list(diagnoses.cases()))
+    parser.add_argument("--diagnoses", type=int, default=campaigns, help="campaigns to diagnose at most (default: all)")
     parser.add_argument("--processes", type=int, default=2, help="at work at once (default 2)")
     parser.add_argument("--only", nargs="+", choices=SECTIONS, default=SECTIONS, help="sections to make; others stay")
     parser.add_argument("--fresh", action="store_true", help="forget finished parts first")
@@ -187,11 +187,11 @@ def main() -> None:
             shutil.rmtree(CACHE / name, ignore_errors=True)
         begun = time.monotonic()
         try:
-            found = section(name, options, CACHE / name / "figures")
+            result = section(name, options, CACHE / name / "figures")
         except Absent as reason:
             say(f"  skipped: {reason}; {'the page keeps what it had' if name in parts else 'the page is without it'}")
             continue
-        parts[name] = written(name, found, options)
+        parts[name] = written(name, result, options)
         write_page(parts)  # after each, so that a run that is stopped leaves a page
         say(f"  {time.monotonic() - begun:.0f} s")
     say(f"{PAGE.relative_to(ROOT)} is written")

@@ -28,11 +28,11 @@ def main(arguments: list[str] | None = None) -> None:
     make = commands.add_parser("make", help="make campaigns without answers; those that are there stay")
     answers = commands.add_parser("answers", help="run `jaxhydro diagnose` on every campaign; goes on where it was stopped")
     scored = commands.add_parser("score", help="score a file of answers")
-    for one in (make, answers, scored):
-        one.add_argument("folder", type=Path, help="folder of the benchmark")
-        chosen = one.add_mutually_exclusive_group() if one is make else one
+    for command in (make, answers, scored):
+        command.add_argument("folder", type=Path, help="folder of the benchmark")
+        chosen = command.add_mutually_exclusive_group() if command is make else command
         chosen.add_argument("--half", choices=HALVES, help="half to set thresholds by, or half to report (default: both)")
-        if one is make:
+        if command is make:
             chosen.add_argument("--cases", nargs="+", metavar="NAME", help="cases by name, such as coulomb_friction-2-1")
     make.add_argument("--most", type=_count, help="make so many cases at most, the middle strength first")
     make.add_argument("--truth", type=Path, metavar="FILE", help="write what is missing in each campaign, as JSON")
@@ -56,13 +56,13 @@ def _count(text: str) -> int:
 
 
 def _make(options: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
-    every = {case.name: case for case in cases() if options.half in (None, case.half)}
+    selectable = {case.name: case for case in cases() if options.half in (None, case.half)}
     for name in options.cases or ():
-        if name not in every:
-            parser.error(f"--cases: expected the name of a case, found {name!r}. {suggest(name, every)}".rstrip())
-    some: list[Case] = [every[name] for name in dict.fromkeys(options.cases or every)][: options.most]
-    for there in make_benchmark(options.folder, some):
-        say(f"{there} of {len(some)} campaigns are in {options.folder}")
+        if name not in selectable:
+            parser.error(f"--cases: expected the name of a case, found {name!r}. {suggest(name, selectable)}".rstrip())
+    selected: list[Case] = [selectable[name] for name in dict.fromkeys(options.cases or selectable)][: options.most]
+    for complete in make_benchmark(options.folder, selected):
+        say(f"{complete} of {len(selected)} campaigns are in {options.folder}")
     if options.truth is not None:
         write_truth(options.folder, options.truth)
         say(f"What is missing in each of them is in {options.truth}")
@@ -75,22 +75,22 @@ def _answers(options: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         parser.error(f"{options.folder}: expected campaigns, found none; `make` makes them")
     beside = options.folder.resolve()
     file = options.out or beside.with_name(f"{beside.name}-answers") / "diagnose.json"
-    found: dict[str, Answer] = {}
+    answers_by_name: dict[str, Answer] = {}
     for done, (name, answer) in enumerate(diagnose_all(options.folder, names, file.with_suffix(""), options.processes), 1):
         if isinstance(answer, str):
             say(f"{done} of {len(names)}, {name}: no answer, {answer}")
             continue
-        found[name] = answer
-        write_answers(file, found)
-        said = ", ".join(one.effect for one in answer.effects) or answer.verdict.replace("_", " ")
-        say(f"{done} of {len(names)}, {name}: {said} ({answer.minutes or 0.0:.1f} min)")
-    say(f"{len(found)} answers are in {file}" if found else "There are no answers")
+        answers_by_name[name] = answer
+        write_answers(file, answers_by_name)
+        summary = ", ".join(claim.effect for claim in answer.effects) or answer.verdict.replace("_", " ")
+        say(f"{done} of {len(names)}, {name}: {summary} ({answer.minutes or 0.0:.1f} min)")
+    say(f"{len(answers_by_name)} answers are in {file}" if answers_by_name else "There are no answers")
 
 
 def _score(options: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
     result = score(options.folder, options.answers, options.half, options.answered_only)
-    said = table(("", *COLUMNS), lines_of(result["table"]))
-    say(f"{result['method']}: {result['answered']} of {result['campaigns']} campaigns answered\n\n{said}")
+    scores = table(("", *COLUMNS), lines_of(result["table"]))
+    say(f"{result['method']}: {result['answered']} of {result['campaigns']} campaigns answered\n\n{scores}")
     file = options.out or options.answers.with_suffix(".score.json")
     write_json(result, file)
     say(f"The score is in {file}")

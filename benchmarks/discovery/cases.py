@@ -80,7 +80,7 @@ class Case(NamedTuple):
 
         Kinds and seeds alternate, so that the halves differ by at most one case in every kind and strength.
         """
-        kinds = next((some for some in (EFFECTS, OUTSIDE, PAIRS) if self.effect in some), ("",))
+        kinds = next((group for group in (EFFECTS, OUTSIDE, PAIRS) if self.effect in group), ("",))
         return HALVES[(kinds.index(self.effect) + self.strength + self.seed) % 2]
 
     @classmethod
@@ -97,11 +97,11 @@ def cases() -> Iterator[Case]:
     spread between the others. Laws from outside at other strengths, for which there is no goal, come last.
     """
     nothing_missing = iter([Case("", 2, seed) for seed in range(1, NOTHING_MISSING_SEEDS + 1)])
-    others = ((3, 1), (1, 1), (3, 2), (1, 2), (3, 3), (1, 3))
-    for strength, seed in ((2, 1), (2, 2), (2, 3), *others):
+    remaining = ((3, 1), (1, 1), (3, 2), (1, 2), (3, 3), (1, 3))
+    for strength, seed in ((2, 1), (2, 2), (2, 3), *remaining):
         for i, effect in enumerate((*EFFECTS, *(OUTSIDE + PAIRS if strength == 2 else ()))):
             if i % 5 == 0 and (case := next(nothing_missing, None)) is not None:
                 yield case
             yield Case(effect, strength, seed)
-    for strength, seed in others:
+    for strength, seed in remaining:
         yield from (Case(effect, strength, seed) for effect in OUTSIDE)

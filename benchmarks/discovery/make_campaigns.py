@@ -49,19 +49,19 @@ def make_in_folders(folders: Mapping[Case, Path], names: Mapping[Case, str]) -> 
     """
     for seed in sorted({case.seed for case in folders}):
         of_seed = [case for case in folders if case.seed == seed]
-        for some in (of_seed[start : start + BATCH] for start in range(0, len(of_seed), BATCH)):
-            parts = {case: folders[case].with_name(f"{folders[case].name}.part") for case in some}
+        for batch in (of_seed[start : start + BATCH] for start in range(0, len(of_seed), BATCH)):
+            parts = {case: folders[case].with_name(f"{folders[case].name}.part") for case in batch}
             for part in parts.values():
                 shutil.rmtree(part, ignore_errors=True)
-            specs = [Spec(parts[case], case.effects, case.strength, seed, name=names.get(case, "")) for case in some]
-            truths = dict(zip(some, make_campaigns(specs), strict=True))
+            specs = [Spec(parts[case], case.effects, case.strength, seed, name=names.get(case, "")) for case in batch]
+            truths = dict(zip(batch, make_campaigns(specs), strict=True))
             for case, part in parts.items():
                 shutil.rmtree(folders[case], ignore_errors=True)
                 part.rename(folders[case])
             yield truths
 
 
-def make_benchmark(folder: Path, some: Sequence[Case]) -> Iterator[int]:
+def make_benchmark(folder: Path, chosen: Sequence[Case]) -> Iterator[int]:
     """Make campaigns without answers; those that are there stay.
 
     Args:
@@ -79,7 +79,7 @@ def make_benchmark(folder: Path, some: Sequence[Case]) -> Iterator[int]:
         read_index(folder)
     else:
         write_index(folder)
-    folders = {case: folder / case.public_name for case in some}
+    folders = {case: folder / case.public_name for case in chosen}
     missing = {case: path for case, path in folders.items() if not path.exists()}
     yield len(folders) - len(missing)
     for _ in make_in_folders(missing, {case: case.public_name for case in missing}):

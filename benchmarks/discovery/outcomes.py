@@ -104,9 +104,9 @@ class Tally(NamedTuple):
         listed: It is named, or is among those that cannot be told from what is named first.
         right: The same, of the campaigns where an effect is named.
         near: The held-out error is within `MAX_ERROR_RATIO` times that with nothing missing.
-        told: The same, or exactly the missing effects are named.
+        near_or_exact: The same, or exactly the missing effects are named.
         alarms: Something is said to be missing where nothing is (all such campaigns).
-        both: Both effects of a pair are named (all pairs).
+        both_named: Both effects of a pair are named (all pairs).
         in_sets: Each effect of a pair is named, or is among those that cannot be told from what is named.
         unexplained: A law from outside the catalogue is said to be unexplained.
         lower: It is answered with effects that lower the held-out error.
@@ -116,9 +116,9 @@ class Tally(NamedTuple):
     listed: Share
     right: Share
     near: Share
-    told: Share
+    near_or_exact: Share
     alarms: Share
-    both: Share
+    both_named: Share
     in_sets: Share
     unexplained: Share
     lower: Share

@@ -58,19 +58,19 @@ def answer_of(saved: dict[str, Any]) -> Answer:
     seconds = saved.get("seconds")
     return Answer(
         verdict=missing["verdict"],
-        effects=[_claim(one) for one in missing["effects"]],
-        considered=[_claim(one) for one in missing["rejected"] if one.get("probability") is not None],
+        effects=[_claim(effect) for effect in missing["effects"]],
+        considered=[_claim(effect) for effect in missing["rejected"] if effect.get("probability") is not None],
         held_out_error=None if before is None or after is None else HeldOutErrors(baseline=before, final=after),
         minutes=None if seconds is None else seconds / 60,
     )
 
 
-def _claim(one: dict[str, Any]) -> ClaimedEffect:
+def _claim(effect: dict[str, Any]) -> ClaimedEffect:
     return ClaimedEffect(
-        effect=one["effect"],
-        motion=one.get("degree_of_freedom"),
-        probability=one.get("evidence", one).get("probability"),
-        indistinguishable_from=[text.split(" ")[0] for text in one.get("indistinguishable_from", [])],
+        effect=effect["effect"],
+        motion=effect.get("degree_of_freedom"),
+        probability=effect.get("evidence", effect).get("probability"),
+        indistinguishable_from=[text.split(" ")[0] for text in effect.get("indistinguishable_from", [])],
     )
 
 

@@ -105,8 +105,10 @@ def rows(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> li
         return with_all({name: Share(sum(n[key] for key in keys), sum(n.values())) for name, n in outside.items()})
 
     def of_kinds(kinds: Sequence[str], which: Outcome) -> dict[str, Share]:
-        asked = {name: [c for c in outcomes if c.effect in kinds and c.strength == s] for s, name in STRENGTHS.items()}
-        return with_all({name: Share(sum(outcomes[c] == which for c in cases), len(cases)) for name, cases in asked.items()})
+        by_strength = {name: [c for c in outcomes if c.effect in kinds and c.strength == s] for s, name in STRENGTHS.items()}
+        return with_all(
+            {name: Share(sum(outcomes[c] == which for c in cases), len(cases)) for name, cases in by_strength.items()}
+        )
 
     minutes = [answer.minutes for answer in answers.values() if answer.minutes is not None]
     quotient = {name: _middle([r for c, r in ratios.items() if c.strength == s]) for s, name in STRENGTHS.items()}
@@ -122,7 +124,7 @@ def rows(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> li
         Row("called_another", "other effects named instead", of_kinds(EFFECTS, Outcome.ANOTHER)),
         Row("not_seen", "nothing said to be missing", of_kinds(EFFECTS, Outcome.NOTHING)),
         Row("unexplained", "said unexplained", of_kinds(EFFECTS, Outcome.UNEXPLAINED)),
-        Row("both_of_two", "two effects: both named", {"middle": tally.both}),
+        Row("both_of_two", "two effects: both named", {"middle": tally.both_named}),
         Row("both_or_in_sets", "two effects: each named or indistinguishable", {"middle": tally.in_sets}),
         Row("false_alarms", "nothing missing: something said", {"all": tally.alarms}),
         Row("outside_unexplained", "outside the catalogue: said unexplained", of_outside("unexplained")),

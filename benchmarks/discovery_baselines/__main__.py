@@ -61,15 +61,15 @@ def main(arguments: list[str] | None = None) -> None:
         print(f"{parser.prog}: {error}{hint}", file=sys.stderr)
         sys.exit(2)
     beside = folder.with_name(f"{folder.name}-answers")
-    file, found = options.out or beside / f"{options.method}.json", {}
-    some = [case for case in cases_in(folder) if options.half in (None, case.half)]
-    for done, case in enumerate(some, 1):
+    file, answers = options.out or beside / f"{options.method}.json", {}
+    selected = [case for case in cases_in(folder) if options.half in (None, case.half)]
+    for done, case in enumerate(selected, 1):
         made = reconstructed(folder / case.public_name, beside / "forces" / f"{case.public_name}.pickle")
-        answer = found[case.public_name] = answered(made, law)
-        write_answers(file, found, f"{name}, {package} {metadata.version(package)}")
-        said = ", ".join(one.effect for one in answer.effects) or answer.verdict.replace("_", " ")
-        say(f"{done} of {len(some)}, {case.public_name}: {said} ({answer.minutes:.1f} min)")
-    say(f"{len(found)} answers are in {file}")
+        answer = answers[case.public_name] = answered(made, law)
+        write_answers(file, answers, f"{name}, {package} {metadata.version(package)}")
+        summary = ", ".join(claim.effect for claim in answer.effects) or answer.verdict.replace("_", " ")
+        say(f"{done} of {len(selected)}, {case.public_name}: {summary} ({answer.minutes:.1f} min)")
+    say(f"{len(answers)} answers are in {file}")
 
 
 if __name__ == "__main__":

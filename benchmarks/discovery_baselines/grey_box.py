@@ -57,7 +57,7 @@ def grey_box_law(made: Reconstruction, motion: str) -> MotionLaw:
         made: Reconstructed forces.
         motion: The motion.
     """
-    tests = [one for one in made.of_use("fit") if motion in one.forces and one.forces[motion].visible]
+    tests = [test for test in made.of_use("fit") if motion in test.forces and test.forces[motion].visible]
     scales, random = scales_of(tests, motion), np.random.default_rng(SEED)
     rows, target = [], []
     for test in tests:
@@ -69,28 +69,28 @@ def grey_box_law(made: Reconstruction, motion: str) -> MotionLaw:
     table, force_drawn = np.concatenate(rows), np.concatenate(target)
     names = list(features_of(tests[0], motion, scales))
     middle, width = table.mean(axis=0), table.std(axis=0)
-    there = np.flatnonzero(width > 1e-12 * width.max())
+    varying = np.flatnonzero(width > 1e-12 * width.max())
 
     def scaled(values: np.ndarray) -> np.ndarray:
-        return (values[:, there] - middle[there]) / width[there]
+        return (values[:, varying] - middle[varying]) / width[varying]
 
-    kernel = ConstantKernel() * RBF(np.full(len(there), 3.0), (0.1, 1e4)) + WhiteKernel(0.1, (1e-6, 1e1))
+    kernel = ConstantKernel() * RBF(np.full(len(varying), 3.0), (0.1, 1e4)) + WhiteKernel(0.1, (1e-6, 1e1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)  # a length at its bound: a feature that does not matter
         process = GaussianProcessRegressor(kernel, normalize_y=True, random_state=SEED).fit(scaled(table), force_drawn)
-    found = permutation_importance(process, scaled(table), force_drawn, n_repeats=REPEATS, random_state=SEED)
-    importance = np.maximum(found.importances_mean, 0.0)
+    permuted = permutation_importance(process, scaled(table), force_drawn, n_repeats=REPEATS, random_state=SEED)
+    importance = np.maximum(permuted.importances_mean, 0.0)
     weights: dict[str, float] = {}
     probabilities: dict[str, float] = {}
     alike: dict[str, tuple[str, ...]] = {}
     for i in np.argsort(-importance):
-        options = EFFECTS_OF[_kind(names[there[i]])]
-        first, *others = options.get(motion, options.get("", ()))
+        options = EFFECTS_OF[_kind(names[varying[i]])]
+        first, *alternatives = options.get(motion, options.get("", ()))
         share = float(importance[i] / max(importance.sum(), 1e-300))
         probabilities[first] = probabilities.get(first, 0.0) + share
         if importance[i] > 0 and importance[i] >= MIN_IMPORTANCE * importance.max():
             weights[first] = weights.get(first, 0.0) + share
-            alike[first] = tuple(others)
+            alike[first] = tuple(alternatives)
 
     def predicted(test: ForcedTest) -> np.ndarray:
         values = np.stack(list(features_of(test, motion, scales).values()), axis=1)

@@ -76,8 +76,8 @@ def answer_of_laws(made: Reconstruction, laws: Sequence[MotionLaw]) -> Answer:
     considered: dict[str, ClaimedEffect] = {}
     for law in helpful:
         for effect, probability in law.probabilities.items():
-            known = considered.get(effect)
-            if effect not in claims and (known is None or probability > (known.probability or 0.0)):
+            previous = considered.get(effect)
+            if effect not in claims and (previous is None or probability > (previous.probability or 0.0)):
                 considered[effect] = _claim(law, effect)
     not_followed = any(not_followed_motions(test) for test in made.of_use("fit"))
     return Answer(

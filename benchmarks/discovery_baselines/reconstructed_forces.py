@@ -62,16 +62,18 @@ class ForcedTest(NamedTuple):
         The residual's mean square falls by what the forces take of the motion that the reconstructed forces make. What those
         do not make of the residual stays: noise, and motion that is faster than is reconstructed.
         """
-        count, found = len(self.test.time), {}
-        made = self.motion_under({name: one.force for name, one in self.forces.items()})
-        left = self.motion_under({name: one.force - force.get(name, np.zeros(count)) for name, one in self.forces.items()})
+        count, errors = len(self.test.time), {}
+        made = self.motion_under({name: recovered.force for name, recovered in self.forces.items()})
+        remaining = self.motion_under(
+            {name: recovered.force - force.get(name, np.zeros(count)) for name, recovered in self.forces.items()}
+        )
         for name, relative in self.relative.items():
             inside, noise = self.forces[name].inside, self.test.noise[name]
             residual = self.test.measured[name] - self.test.simulated[name]
-            squares = [float(np.mean(one[inside] ** 2)) for one in (residual, made[name], left[name])]
-            rest = max(squares[0] - squares[1], noise**2)
-            found[name] = relative * ((squares[2] + rest) / (squares[1] + rest)) ** 0.5
-        return found
+            squares = [float(np.mean(series[inside] ** 2)) for series in (residual, made[name], remaining[name])]
+            unexplained = max(squares[0] - squares[1], noise**2)
+            errors[name] = relative * ((squares[2] + unexplained) / (squares[1] + unexplained)) ** 0.5
+        return errors
 
 
 class Reconstruction(NamedTuple):
@@ -87,27 +89,27 @@ class Reconstruction(NamedTuple):
 
     def of_use(self, use: str) -> list[ForcedTest]:
         """Tests of a use (fit, holdout)."""
-        return [one for one in self.tests if one.test.use == use]
+        return [test for test in self.tests if test.test.use == use]
 
     def motions(self) -> list[str]:
         """Motions with a force above the noise in a fitted test."""
-        return [name for name in DOFS if any(name in one.forces and one.forces[name].visible for one in self.of_use("fit"))]
+        return [name for name in DOFS if any(name in test.forces and test.forces[name].visible for test in self.of_use("fit"))]
 
 
 def mean_damping(model: Model, test: ResampledTest, forces: Mapping[str, RecoveredForce], mass: np.ndarray) -> np.ndarray:
     """Mean over a test of the force's derivative by velocity, negative (6, 6); columns of other motions are zero."""
-    time, rest = test.time[::EVERY], np.asarray(equilibrium(model))
-    position, rate = np.tile(rest, (len(time), 1)), np.zeros((len(time), 6))
-    for name, one in forces.items():
+    time, equilibrium_position = test.time[::EVERY], np.asarray(equilibrium(model))
+    position, rate = np.tile(equilibrium_position, (len(time), 1)), np.zeros((len(time), 6))
+    for name, recovered in forces.items():
         j = DOFS.index(name)
-        position[:, j] += one.simulated[0][::EVERY]
-        rate[:, j] = one.simulated[1][::EVERY]
-    found = np.zeros((6, 6))
+        position[:, j] += recovered.simulated[0][::EVERY]
+        rate[:, j] = recovered.simulated[1][::EVERY]
+    damping = np.zeros((6, 6))
     for j in (DOFS.index(name) for name in forces):
         step = RATE_STEP * np.eye(6)[j]
-        more, less = (accelerations(model, test.sea, time, position, rate + sign * step) for sign in (1, -1))
-        found[:, j] = -mass @ (more - less).mean(axis=0) / (2 * RATE_STEP)
-    return found
+        ahead, behind = (accelerations(model, test.sea, time, position, rate + sign * step) for sign in (1, -1))
+        damping[:, j] = -mass @ (ahead - behind).mean(axis=0) / (2 * RATE_STEP)
+    return damping
 
 
 def reconstruct(folder: Path) -> Reconstruction:
@@ -117,28 +119,30 @@ def reconstruct(folder: Path) -> Reconstruction:
     search = Search.of(campaign, set_up_study(campaign, options_of(campaign)), lambda *_: None)
     fitted = calibration_of(campaign, search.fits, fit_baseline(search), None)
     model = fitted.model
-    rest = equilibrium(model)
-    mass, stiffness = (np.asarray(one) for one in linearised(model, rest))
-    base = np.asarray(rest) * (campaign.manifest.zero is not None)
-    scored = {test.id: {one.channel: float(one.relative) for one in test.series if one.scored} for test in fitted.tests}
+    equilibrium_position = equilibrium(model)
+    mass, stiffness = (np.asarray(matrix) for matrix in linearised(model, equilibrium_position))
+    base = np.asarray(equilibrium_position) * (campaign.manifest.zero is not None)
+    scored = {
+        test.id: {series.channel: float(series.relative) for series in test.series if series.scored} for test in fitted.tests
+    }
     tests = []
     for test in resampled_tests(search.fits, fitted):
         forces = forces_of(model, test, base, highest_frequency(model))
-        mine = np.ix_(*[[DOFS.index(name) for name in forces]] * 2)
+        block = np.ix_(*[[DOFS.index(name) for name in forces]] * 2)
         damping = mean_damping(model, test, forces, mass)
         bare = test._replace(sea=None)
-        forces = {name: one._replace(test=bare) for name, one in forces.items()}
-        tests.append(ForcedTest(forces, mass[mine], damping[mine], stiffness[mine], scored[test.id]))
+        forces = {name: recovered._replace(test=bare) for name, recovered in forces.items()}
+        tests.append(ForcedTest(forces, mass[block], damping[block], stiffness[block], scored[test.id]))
     return Reconstruction(tests, (time.monotonic() - begun) / 60)
 
 
-def reconstructed(folder: Path, kept: Path) -> Reconstruction:
+def reconstructed(folder: Path, saved: Path) -> Reconstruction:
     """`reconstruct`, kept in a file: other methods take it from there."""
-    if kept.exists():
-        return pickle.loads(kept.read_bytes())
-    found = reconstruct(folder)
-    kept.parent.mkdir(parents=True, exist_ok=True)
-    part = kept.with_suffix(".part")
-    part.write_bytes(pickle.dumps(found))
-    part.replace(kept)
-    return found
+    if saved.exists():
+        return pickle.loads(saved.read_bytes())
+    reconstruction = reconstruct(folder)
+    saved.parent.mkdir(parents=True, exist_ok=True)
+    part = saved.with_suffix(".part")
+    part.write_bytes(pickle.dumps(reconstruction))
+    part.replace(saved)
+    return reconstruction

@@ -37,9 +37,9 @@ def rows_of(tests: Sequence[ForcedTest], motion: str, scales: Scales) -> tuple[n
     tables, targets = [], []
     for test in tests:
         force = test.forces[motion]
-        every = max(1, round(ROW_STEP / force.test.step))
-        target = force.force[force.inside][::every]
-        table = np.stack(list(columns_of(test, motion, scales).values()), axis=1)[force.inside][::every]
+        stride = max(1, round(ROW_STEP / force.test.step))
+        target = force.force[force.inside][::stride]
+        table = np.stack(list(columns_of(test, motion, scales).values()), axis=1)[force.inside][::stride]
         tables.append(table / len(target) ** 0.5)
         targets.append(target / len(target) ** 0.5)
     return np.concatenate(tables), np.concatenate(targets)
@@ -75,28 +75,29 @@ def sindy_law(made: Reconstruction, motion: str) -> MotionLaw:
         motion: The motion.
     """
     fitted, held = (
-        [one for one in made.of_use(use) if motion in one.forces and one.forces[motion].visible] for use in ("fit", "holdout")
+        [test for test in made.of_use(use) if motion in test.forces and test.forces[motion].visible]
+        for use in ("fit", "holdout")
     )
     scales = scales_of(fitted, motion)
     names = list(columns_of(fitted[0], motion, scales))
     table, target = rows_of(fitted, motion, scales)
     norm, height = np.linalg.norm(table, axis=0), float(np.linalg.norm(target))
     unit = np.divide(table, norm, out=np.zeros_like(table), where=norm > 0)
-    there = independent(unit)
+    distinct = independent(unit)
     held_table, held_target = rows_of(held or fitted, motion, scales)
-    tried = []
+    candidates = []
     for size in range(1, MAX_TERMS + 1):
-        inclusion = ensemble(unit[:, there], target / height, size)
-        kept, coefficients = there[inclusion >= MIN_INCLUSION], np.zeros(len(names))
-        if len(kept):
-            coefficients[kept] = np.linalg.lstsq(unit[:, kept], target, rcond=1e-9)[0] / norm[kept]
-        left = held_target - held_table @ coefficients
-        tried.append((1 - float(left @ left / (held_target @ held_target)), inclusion, coefficients))
-    best = max(share for share, *_ in tried)
-    _, inclusion, coefficients = next(one for one in tried if one[0] >= best - SIMPLER_LAW_MARGIN)
+        inclusion = ensemble(unit[:, distinct], target / height, size)
+        included, coefficients = distinct[inclusion >= MIN_INCLUSION], np.zeros(len(names))
+        if len(included):
+            coefficients[included] = np.linalg.lstsq(unit[:, included], target, rcond=1e-9)[0] / norm[included]
+        residual = held_target - held_table @ coefficients
+        candidates.append((1 - float(residual @ residual / (held_target @ held_target)), inclusion, coefficients))
+    best = max(share for share, *_ in candidates)
+    _, inclusion, coefficients = next(candidate for candidate in candidates if candidate[0] >= best - SIMPLER_LAW_MARGIN)
     weights: dict[str, float] = {}
     probabilities: dict[str, float] = {}
-    for i, fraction in zip(there, inclusion, strict=True):
+    for i, fraction in zip(distinct, inclusion, strict=True):
         if effect := effect_of(names[i], motion):
             weights[effect] = weights.get(effect, 0.0) + float(abs(coefficients[i]) * norm[i] / height)
             probabilities[effect] = max(probabilities.get(effect, 0.0), float(fraction))
@@ -104,4 +105,4 @@ def sindy_law(made: Reconstruction, motion: str) -> MotionLaw:
     def predicted(test: ForcedTest) -> np.ndarray:
         return np.stack(list(columns_of(test, motion, scales).values()), axis=1) @ coefficients
 
-    return MotionLaw(motion, {effect: one for effect, one in weights.items() if one > 0}, probabilities, {}, predicted)
+    return MotionLaw(motion, {effect: weight for effect, weight in weights.items() if weight > 0}, probabilities, {}, predicted)

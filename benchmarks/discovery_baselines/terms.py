@@ -48,18 +48,18 @@ class Scales(NamedTuple):
 
 def scales_of(tests: Sequence[ForcedTest], motion: str) -> Scales:
     """Scales of a motion."""
-    forces = [one.forces[motion] for one in tests if motion in one.forces]
-    squares = [(np.var(one.position[one.inside]), np.var(one.velocity[one.inside])) for one in forces]
+    forces = [test.forces[motion] for test in tests if motion in test.forces]
+    squares = [(np.var(force.position[force.inside]), np.var(force.velocity[force.inside])) for force in forces]
     return Scales(*np.sqrt(np.mean(squares, axis=0)).tolist())
 
 
 def hysteretic(velocity: np.ndarray, step: float, limit: float) -> np.ndarray:
     """Bouc-Wen variable of exponent 1 along a motion: dz/dt = (v - |v| z) / limit, by implicit Euler."""
-    found = np.zeros(len(velocity))
+    z = np.zeros(len(velocity))
     for i in range(1, len(velocity)):
         moved = step * velocity[i] / limit
-        found[i] = (found[i - 1] + moved) / (1 + abs(moved))
-    return found
+        z[i] = (z[i - 1] + moved) / (1 + abs(moved))
+    return z
 
 
 def terms_of(test: ForcedTest, motion: str, scales: Scales) -> dict[str, np.ndarray]:
@@ -67,8 +67,8 @@ def terms_of(test: ForcedTest, motion: str, scales: Scales) -> dict[str, np.ndar
 
     Acceleration is none of them: with position and velocity it is the force itself, by the equation of motion.
     """
-    one = test.forces[motion]
-    x, v, step, wave = one.position, one.velocity, one.test.step, one.test.wave
+    recovered = test.forces[motion]
+    x, v, step, wave = recovered.position, recovered.velocity, recovered.test.step, recovered.test.wave
     rows = {
         "1": np.ones_like(x),
         "x": x,
@@ -82,9 +82,9 @@ def terms_of(test: ForcedTest, motion: str, scales: Scales) -> dict[str, np.ndar
         "x^3": x**3,
         "v lagged": lagged(v, step, scales.position / scales.velocity),
     }
-    for other, force in test.forces.items():
-        if other != motion:
-            rows |= {f"x of {other}": force.position, f"v of {other}": force.velocity}
+    for motion_name, force in test.forces.items():
+        if motion_name != motion:
+            rows |= {f"x of {motion_name}": force.position, f"v of {motion_name}": force.velocity}
     still = np.zeros_like(x)
     if wave is None:
         return rows | dict.fromkeys(("eta", "eta, a quarter later", "eta^2 slow", "eta^2 slow v", "v in waves"), still)
@@ -101,5 +101,5 @@ def terms_of(test: ForcedTest, motion: str, scales: Scales) -> dict[str, np.ndar
 def effect_of(term: str, motion: str) -> str:
     """Effect that a term of a motion's force is taken for; "" for none."""
     kind = f"{term[0]} of another motion" if term[1:5] == " of " else term
-    found = EFFECT_OF[kind]
-    return found.get(motion, found[""]) if isinstance(found, dict) else found
+    effects = EFFECT_OF[kind]
+    return effects.get(motion, effects[""]) if isinstance(effects, dict) else effects

@@ -82,8 +82,8 @@ def fingerprint(*inputs: Path | str) -> str:
     Of a section's own modules only those that run are inputs. A key that covers text of the page would make a run of hours
     stale by a change of wording.
     """
-    every = [path for name in ("jaxhydro", "calibration") for path in (ROOT / name).rglob("*.py")]
-    sources = sorted(path for path in every if not EDGE & {path, *path.parents})
+    modules = [path for name in ("jaxhydro", "calibration") for path in (ROOT / name).rglob("*.py")]
+    sources = sorted(path for path in modules if not EDGE & {path, *path.parents})
     digest = hashlib.sha256()
     for item in [*sources, *inputs]:
         if isinstance(item, Path):
@@ -112,9 +112,9 @@ def cached(section: str, key: str, name: str, work: Callable[[], Any] | None = N
     if text_only and (entry := evidence(section).get(name)) is not None:
         return entry["result"]
     path = CACHE / section / key / f"{name}.json"
-    others = sorted((CACHE / section).glob(f"*/{name}.json"), key=lambda p: p.stat().st_mtime)
-    if not path.exists() and others and (accept_stale or text_only):
-        path = others[-1]
+    earlier = sorted((CACHE / section).glob(f"*/{name}.json"), key=lambda p: p.stat().st_mtime)
+    if not path.exists() and earlier and (accept_stale or text_only):
+        path = earlier[-1]
         stale.append(section)
     if path.exists():
         result = json.loads(path.read_text())
@@ -152,8 +152,8 @@ def record(section: str, key: str, name: str, result: Any) -> None:
     if section in KEPT_ELSEWHERE or results.get(name) == entry:
         return
     # names are sorted, what is within a result is not: its order is that of the rows of tables
-    every = dict(sorted((results | {name: entry}).items()))
-    text = json.dumps(every, indent=1) + "\n"
+    merged = dict(sorted((results | {name: entry}).items()))
+    text = json.dumps(merged, indent=1) + "\n"
     if len(text) > MAX_EVIDENCE:
         say(f"  {section}: {name} is too large for docs/evidence and stays in the cache")
         return

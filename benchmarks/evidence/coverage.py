@@ -46,20 +46,20 @@ def of_campaign(name: str) -> dict[str, Any]:
     fit = prepare_fit(campaign)
     run_fit(fit)
     result, likely = conclude(campaign, fit.decays.problem.model, fit, 0.0), likelihood_of(fit)
-    known = {k: p for k, p in result.parameters.items() if p.standard_deviation is not None}
-    found: dict[str, dict[str, Any]] = {
-        "coloured": {k: likely.interval(k) for k in known},
-        "white": {k: likely.interval(k, white=True) for k in known},
-        "stated": {k: [p.value + s * 1.96 * (p.standard_deviation or 0.0) for s in (-1, 1)] for k, p in known.items()},
+    identified = {k: p for k, p in result.parameters.items() if p.standard_deviation is not None}
+    intervals: dict[str, dict[str, Any]] = {
+        "coloured": {k: likely.interval(k) for k in identified},
+        "white": {k: likely.interval(k, white=True) for k in identified},
+        "stated": {k: [p.value + s * 1.96 * (p.standard_deviation or 0.0) for s in (-1, 1)] for k, p in identified.items()},
     }
     if index // 4 % PROFILED == 0:
-        found["profile"] = {k: profile(likely, k).interval for k in CLOSE if k in known}
+        intervals["profile"] = {k: profile(likely, k).interval for k in CLOSE if k in identified}
     if index >= BOOTSTRAPPED:
         draws = bootstrap_blocks(likely, DRAWS, seed=index)
-        found["blocks"] = {k: draws.interval(k, kind="normal") for k in known}
-        found["unsettled"] = {"draws": draws.unsettled}
+        intervals["blocks"] = {k: draws.interval(k, kind="normal") for k in identified}
+        intervals["unsettled"] = {"draws": draws.unsettled}
     return {
-        "intervals": found,
+        "intervals": intervals,
         "excess": likely.excess(),
         "converged": fit.converged,
         "iterations": fit.iterations,
@@ -79,9 +79,9 @@ def of_measured(name: str) -> dict[str, list[float]]:
     fit = prepare_fit(campaign)
     run_fit(fit)
     likely, result = likelihood_of(fit), conclude(campaign, fit.decays.problem.model, fit, 0.0)
-    known = [k for k, p in result.parameters.items() if p.identifiable]
+    identified = [k for k, p in result.parameters.items() if p.identifiable]
     rows = zip(likely.labels, likely.deviation(), likely.deviation(white=True), strict=True)
-    return {k: [float(sd), float(white), float(sd / white)] for k, sd, white in rows if k in known}
+    return {k: [float(sd), float(white), float(sd / white)] for k, sd, white in rows if k in identified}
 
 
 def key() -> str:
@@ -109,14 +109,14 @@ def run(figures: Path, processes: int, campaigns: int = CAMPAIGNS) -> Section:
 
 def hits_of(results: dict[int, dict[str, Any]], method: str, kind: str | None = None, label: str | None = None) -> list[bool]:
     """Whether each interval of a method holds the truth."""
-    found = []
+    hits = []
     for index, result in results.items():
         if kind is None or kind_of(index) == kind:
-            for one, (low, high) in result["intervals"].get(method, {}).items():
-                if label in (None, one):
-                    above = low is None or low <= TRUE[one]
-                    found.append(above and (high is None or TRUE[one] <= high))
-    return found
+            for coefficient, (low, high) in result["intervals"].get(method, {}).items():
+                if label in (None, coefficient):
+                    above = low is None or low <= TRUE[coefficient]
+                    hits.append(above and (high is None or TRUE[coefficient] <= high))
+    return hits
 
 
 def share(hits: list[bool]) -> str:
@@ -156,7 +156,7 @@ def conclude(results: dict[int, dict[str, Any]], measured: dict[str, dict[str, l
     by_label = {label: hits_of(results, "coloured", label=label) for label in FREE}
     shares = {label: float(np.mean(hits)) for label, hits in by_label.items() if hits}
     outside = [k for k, x in shares.items() if not LOW <= x <= HIGH]
-    every = float(np.mean(hits_of(results, "coloured")))
+    overall = float(np.mean(hits_of(results, "coloured")))
     count = {kind: sum(kind_of(i) == kind for i in results) for kind in KINDS}
     text = (
         f"{len(results)} campaigns of four short decays (heave twice 120 s, pitch twice 160 s) are made by the separate NumPy "
@@ -176,8 +176,8 @@ def conclude(results: dict[int, dict[str, Any]], measured: dict[str, dict[str, l
         + table(("Coefficient", *(kind.capitalize() for kind in KINDS)), excess)
         + heading
         + (table(("Campaign", "Coefficient", "Deviation", "As if white", "Too small by"), real) if real else "")
-        + f"\n- Over all: {100 * every:.1f} % of the intervals hold the truth; the goal is {100 * LOW:.0f} to "
-        f"{100 * HIGH:.0f} %. {'Met.' if LOW <= every <= HIGH else 'Not met.'}\n"
+        + f"\n- Over all: {100 * overall:.1f} % of the intervals hold the truth; the goal is {100 * LOW:.0f} to "
+        f"{100 * HIGH:.0f} %. {'Met.' if LOW <= overall <= HIGH else 'Not met.'}\n"
         f"- Coefficient by coefficient: from {100 * min(shares.values()):.0f} to {100 * max(shares.values()):.0f} %. "
         f"{'Met.' if not outside else 'Not met by ' + ', '.join(outside) + '.'}\n"
         f"- {sum(r['converged'] for r in results.values())} of {len(results)} fits converged, in "
@@ -188,8 +188,8 @@ def conclude(results: dict[int, dict[str, Any]], measured: dict[str, dict[str, l
         "90 to 99 %"
         for k in outside
     ]
-    if not LOW <= every <= HIGH:
-        short.insert(0, f"95 % intervals hold the truth in {100 * every:.1f} % of cases; the goal is 90 to 99 %")
+    if not LOW <= overall <= HIGH:
+        short.insert(0, f"95 % intervals hold the truth in {100 * overall:.1f} % of cases; the goal is 90 to 99 %")
     return Section(TITLE, text, (draw(results, figures / "coverage.png"),), tuple(short))
 
 
@@ -206,13 +206,13 @@ def draw(results: dict[int, dict[str, Any]], path: Path) -> Path:
         ax.axvspan(100 * LOW, 100 * HIGH, color="#e9ecf0", lw=0, zorder=0)
         ax.axvline(95, color=GREY, lw=0.6)
         artists = {}
-        for place, (method, (colour, marker)) in enumerate(looks.items()):
+        for rank, (method, (colour, marker)) in enumerate(looks.items()):
             for row, label in enumerate((None, *FREE)):
                 hits = hits_of(results, method, label=label)
                 if not hits:
                     continue
                 low, high = binomtest(sum(hits), len(hits)).proportion_ci()
-                y, x = row + 0.18 * (place - 1.5), 100 * float(np.mean(hits))
+                y, x = row + 0.18 * (rank - 1.5), 100 * float(np.mean(hits))
                 ax.plot([100 * low, 100 * high], [y, y], color=colour, lw=0.9)
                 artists[METHODS[method]] = ax.plot(x, y, marker, ms=3.5, color=colour, mew=0, ls="")[0]
         ax.set_yticks(range(len(FREE) + 1), ["all", *FREE])

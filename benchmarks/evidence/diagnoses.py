@@ -46,26 +46,32 @@ def of_case(name: str) -> dict[str, Any]:
     result = diagnose(campaign.model, campaign)
     return {
         "verdict": result.verdict,
-        "effects": [one.effect for one in result.effects],
-        "motions": [one.degree_of_freedom for one in result.effects],
-        "alike": [[text.split(" ")[0] for text in one.indistinguishable] for one in result.effects],
-        "evidence": [[e.delta_bic, e.holdout_gain, e.clear] for e in (one.evidence for one in result.effects)],
-        "probability": [one.evidence.probability for one in result.effects],
+        "effects": [effect.effect for effect in result.effects],
+        "motions": [effect.degree_of_freedom for effect in result.effects],
+        "alike": [[text.split(" ")[0] for text in effect.indistinguishable] for effect in result.effects],
+        "evidence": [[e.delta_bic, e.holdout_gain, e.clear] for e in (effect.evidence for effect in result.effects)],
+        "probability": [effect.evidence.probability for effect in result.effects],
         "error": [result.baseline.objective("holdout"), result.augmented.objective("holdout")],
-        "in_doubt": [one.in_doubt for one in result.effects],
-        "refused": {listed(one.effect, one.degree_of_freedom): describe_refusal(one.reason) for one in result.rejected},
-        "left": [[one.test, one.use, one.channel, one.rms, one.noise, one.relative, one.bands] for one in result.anatomy_after],
+        "in_doubt": [effect.in_doubt for effect in result.effects],
+        "refused": {
+            listed(candidate.effect, candidate.degree_of_freedom): describe_refusal(candidate.reason)
+            for candidate in result.rejected
+        },
+        "left": [
+            [series.test, series.use, series.channel, series.rms, series.noise, series.relative, series.bands]
+            for series in result.anatomy_after
+        ],
         "tried": {
-            f"{one.round} {listed(one.effect, one.degree_of_freedom)}": stored(one.verdict)
-            for one in result.scores
-            if one.verdict is not None
+            f"{score.round} {listed(score.effect, score.degree_of_freedom)}": stored(score.verdict)
+            for score in result.scores
+            if score.verdict is not None
         },
         "taken_out": {
-            listed(one.effect, one.degree_of_freedom): stored(one.taken_out)
-            for one in result.rejected
-            if one.taken_out is not None
+            listed(candidate.effect, candidate.degree_of_freedom): stored(candidate.taken_out)
+            for candidate in result.rejected
+            if candidate.taken_out is not None
         },
-        "laws": {one.motion: [[term.name for term in one.law.terms], one.law.share] for one in result.latent},
+        "laws": {force.motion: [[term.name for term in force.law.terms], force.law.share] for force in result.latent},
         "seconds": result.seconds,
         "sources": key(),
     }
@@ -87,4 +93,6 @@ def run(figures: Path, processes: int, most: int) -> Section:
         keep_all({name: result})
     ordered = {Case.of(name): results[name] for name in names if name in results}
     earlier = sum(result["sources"] != sources for result in ordered.values())
-    return conclude(ordered, earlier, draw({case: answer_of(one) for case, one in ordered.items()}, figures / "diagnoses.png"))
+    return conclude(
+        ordered, earlier, draw({case: answer_of(result) for case, result in ordered.items()}, figures / "diagnoses.png")
+    )

@@ -16,23 +16,23 @@ def draw(answers: Mapping[Case, Answer], path: Path) -> Path:
 
     from jaxhydro.plots.style import GREY, WIDTH, header, save, style
 
-    one = {
+    first_answers = {
         case: named_effects(answer)[0] if answer.verdict == "found" else answer.verdict
         for case, answer in answers.items()
         if len(case.effects) < 2
     }
     last = ("nothing_missing", "unexplained")
-    more = sorted({*one.values()} - {*EFFECTS, *last})
-    columns = (*EFFECTS, *more, *last)
-    rows = [effect for effect in (*EFFECTS, *OUTSIDE, "") if any(case.effect == effect for case in one)]
-    strengths = [k for k in STRENGTHS if any(case.effect and case.strength == k for case in one)]
+    unlisted = sorted({*first_answers.values()} - {*EFFECTS, *last})
+    columns = (*EFFECTS, *unlisted, *last)
+    rows = [effect for effect in (*EFFECTS, *OUTSIDE, "") if any(case.effect == effect for case in first_answers)]
+    strengths = [k for k in STRENGTHS if any(case.effect and case.strength == k for case in first_answers)]
     with style():
         figure = Figure(figsize=((0.9 + 0.75 * len(strengths)) * WIDTH, 0.14 * len(rows) + 1.9), layout="constrained")
         for ax, strength in zip(np.atleast_1d(figure.subplots(1, len(strengths), sharey=True)), strengths, strict=True):
             counts = np.zeros((len(rows), len(columns)))
-            for case, said in one.items():
+            for case, answered in first_answers.items():
                 if not case.effect or case.strength == strength:
-                    counts[rows.index(case.effect), columns.index(said)] += 1
+                    counts[rows.index(case.effect), columns.index(answered)] += 1
             of = counts.sum(axis=1, keepdims=True)
             ax.imshow(np.where(of > 0, counts / np.maximum(of, 1), np.nan), cmap="Blues", vmin=0, vmax=1, aspect="auto")
             for i, j in zip(*np.nonzero(counts), strict=True):
@@ -46,6 +46,6 @@ def draw(answers: Mapping[Case, Answer], path: Path) -> Path:
             ax.set_xlabel("said first")
             ax.set_title(f"{STRENGTHS[strength]} strength", loc="left")
         figure.axes[0].set_ylabel("missing in the tank")
-        header(figure, f"{len(one)} campaigns: what is missing, and what a diagnosis says first")
+        header(figure, f"{len(first_answers)} campaigns: what is missing, and what a diagnosis says first")
         save(figure, path)
     return path

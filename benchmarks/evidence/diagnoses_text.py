@@ -52,13 +52,13 @@ def tally_sentences(tally: Tally) -> str:
     """Counts at the middle strength, in sentences."""
     two = (
         (
-            f"\n- Two effects at once: both were found in {tally.both}. With those that they cannot be told from, both were "
-            f"found in {tally.in_sets}."
+            f"\n- Two effects at once: both were found in {tally.both_named}. With those that they cannot be told from, both "
+            f"were found in {tally.in_sets}."
         )
-        if tally.both.of
+        if tally.both_named.of
         else ""
     )
-    others = (
+    from_outside = (
         (
             f"\n- Effects of this strength that no candidate has the law of: {tally.unexplained} are said to be unexplained. "
             f"{tally.lower} are answered with a law that lowers the held-out error."
@@ -72,37 +72,39 @@ def tally_sentences(tally: Tally) -> str:
         f"what is named first, in {tally.listed}.\n"
         f"- Nothing missing: {tally.alarms} raised a false alarm, an effect or something unexplained.{two}\n"
         "- The error of tests that were not fitted (held-out error) is compared with its value for the same platform and waves "
-        f"with nothing missing. It is within {MAX_ERROR_RATIO} times that value in {tally.near}. In {tally.told} it is, or "
-        "exactly what is missing was found. A model that was told the truth then has the same error."
-        f"{others}\n\n"
+        f"with nothing missing. It is within {MAX_ERROR_RATIO} times that value in {tally.near}. In {tally.near_or_exact} it "
+        "is, or exactly what is missing was found. A model that was told the truth then has the same error."
+        f"{from_outside}\n\n"
     )
 
 
-def shortfalls(said: Mapping[Case, Outcome], answers: Mapping[Case, Answer], ratios: Mapping[Case, float]) -> Iterator[str]:
+def shortfalls(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Answer], ratios: Mapping[Case, float]) -> Iterator[str]:
     """Goals that are not reached."""
-    weak, tally, strong = (Tally.of(said, answers, ratios, strength) for strength in (1, 2, 3))
+    weak, tally, strong = (Tally.of(outcomes, answers, ratios, strength) for strength in (1, 2, 3))
     answered = Share(tally.unexplained.count + tally.lower.count, tally.lower.of)
     goals = (
         (tally.named, NAMED_MIDDLE, "named first"),
         (strong.named, NAMED_STRONG, "strong effects named first"),
         (tally.listed, IN_SET, "in the set"),
         (weak.right, RIGHT_WEAK, "weak effects right where one is named"),
-        (tally.both, BOTH, "both of two found"),
-        (tally.told, 1.0, f"held-out error within {MAX_ERROR_RATIO} times that of a model that was told the truth"),
+        (tally.both_named, BOTH, "both of two found"),
+        (tally.near_or_exact, 1.0, f"held-out error within {MAX_ERROR_RATIO} times that of a model that was told the truth"),
         (answered, OUTSIDE_ANSWERED, "outside the catalogue unexplained, or answered with a law that helps"),
         (reliability(answers)[-1].missing, SURE, "effects of a probability from 0.9 that are missing"),
     )
     for share, goal, words in goals:
         if share.count < goal * share.of:
             yield f"diagnosis: {words} in {share}, goal {100 * goal:.0f} %"
-    called = sum(one == Outcome.ANOTHER for case, one in said.items() if case.effect in EFFECTS and case.strength > 1)
+    called = sum(
+        answered == Outcome.ANOTHER for case, answered in outcomes.items() if case.effect in EFFECTS and case.strength > 1
+    )
     if called:
         yield f"diagnosis: middle and strong effects called by another name in {called}, goal none"
     if tally.alarms.count > FALSE_ALARMS * tally.alarms.of:
         yield f"diagnosis: false alarms in {tally.alarms}, goal 1 of 40"
 
 
-def other_strengths(said: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> str:
+def other_strengths(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> str:
     """What is said of strong and of weak effects, and of laws from outside, in sentences."""
     words = {
         "named": "{} named first",
@@ -113,43 +115,50 @@ def other_strengths(said: Mapping[Case, Outcome], answers: Mapping[Case, Answer]
     }
     sentences = []
     for strength in (3, 1):
-        found = [one for case, one in said.items() if case.effect in EFFECTS and case.strength == strength]
-        counted = ", ".join(text.format(found.count(one)) for one, text in words.items() if one in found)
-        sentences += [f"Of {len(found)} {STRENGTHS[strength]} effects: {counted}."] if found else []
-        counts = outside_answers(said, answers, strength)
+        strength_outcomes = [
+            answered for case, answered in outcomes.items() if case.effect in EFFECTS and case.strength == strength
+        ]
+        counted = ", ".join(
+            text.format(strength_outcomes.count(kind)) for kind, text in words.items() if kind in strength_outcomes
+        )
+        sentences += [f"Of {len(strength_outcomes)} {STRENGTHS[strength]} effects: {counted}."] if strength_outcomes else []
+        counts = outside_answers(outcomes, answers, strength)
         counted = ", ".join(f"{count} {OUTSIDE_WORDS[key]}" for key, count in counts.items() if count)
         sentences += [f"Of {sum(counts.values())} {STRENGTHS[strength]} laws from outside: {counted}."] if counted else []
     return " ".join(sentences)
 
 
-def half_to_report(said: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> dict[str, dict[str, Any]]:
+def half_to_report(outcomes: Mapping[Case, Outcome], answers: Mapping[Case, Answer]) -> dict[str, dict[str, Any]]:
     """Table of the public score, of the cases that no threshold is set by."""
-    mine = {case: one for case, one in said.items() if case.half == "report"}
-    return table_of(mine, {case: answers[case] for case in mine})
+    reported = {case: answered for case, answered in outcomes.items() if case.half == "report"}
+    return table_of(reported, {case: answers[case] for case in reported})
 
 
 def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) -> Section:
     """The tables and what falls short; so many results are of `earlier` sources."""
     answers = {case: answer_of(result) for case, result in results.items()}
-    said = {case: outcome(case, answer) for case, answer in answers.items()}
+    outcomes = {case: outcome(case, answer) for case, answer in answers.items()}
     ratio = error_ratios(answers, floors_of(results))
     rows = []
     for effect in (*EFFECTS, *OUTSIDE, *PAIRS):
         cells = []
         for strength in STRENGTHS:
-            mine = [case for case in said if (case.effect, case.strength) == (effect, strength)]
+            cell_cases = [case for case in outcomes if (case.effect, case.strength) == (effect, strength)]
             cells.append(
-                "; ".join(_words(case, said[case], answers[case], results[case], ratio.get(case)) for case in mine) or "–"
+                "; ".join(_words(case, outcomes[case], answers[case], results[case], ratio.get(case)) for case in cell_cases)
+                or "–"
             )
-        rows.append((" + ".join(f"`{one}`" for one in effect.split("+")) + (" (outside)" if effect in OUTSIDE else ""), *cells))
-    tally, total = Tally.of(said, answers, ratio), sum(1 for _ in cases())
+        rows.append(
+            (" + ".join(f"`{name}`" for name in effect.split("+")) + (" (outside)" if effect in OUTSIDE else ""), *cells)
+        )
+    tally, total = Tally.of(outcomes, answers, ratio), sum(1 for _ in cases())
     by = f", {earlier} of them by earlier sources" if earlier else ""
     text = (
-        f"{tally_sentences(tally)}{other_strengths(said, answers)}\n\n"
+        f"{tally_sentences(tally)}{other_strengths(outcomes, answers)}\n\n"
         "Each campaign has nine decays and two seas of 1600 s each. They come from `benchmarks/tank.py`, a plain NumPy tank "
         "that shares no code with the package. It has noise, imperfect releases, and mass and mooring not quite as in the "
         f"platform file. {len(results)} of {total} campaigns were run{by}.{SEARCHED if earlier else ''}\n\n"
-        f"{REPORTED}\n\n{table(('', *COLUMNS), lines_of(half_to_report(said, answers)))}\n{LAWS}\n\n"
+        f"{REPORTED}\n\n{table(('', *COLUMNS), lines_of(half_to_report(outcomes, answers)))}\n{LAWS}\n\n"
         "What was said, seed by seed:\n\n"
         "- *nothing*: nothing missing\n"
         "- a name: that effect instead\n"
@@ -162,11 +171,10 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
     )
     nulls = {case: result for case, result in results.items() if not case.effect}
     if nulls:
-        text += (
-            f"\nOf nothing missing: {', '.join(_words(case, said[case], answers[case], results[case]) for case in nulls)}.\n"
-        )
-    left = [f"diagnosis: {len(results)} of {total} campaigns run"] if len(results) < total else []
-    return Section(TITLE, text + thresholds(nulls), (figure,), (*shortfalls(said, answers, ratio), *left))
+        cells = [_words(case, outcomes[case], answers[case], results[case]) for case in nulls]
+        text += f"\nOf nothing missing: {', '.join(cells)}.\n"
+    incomplete = [f"diagnosis: {len(results)} of {total} campaigns run"] if len(results) < total else []
+    return Section(TITLE, text + thresholds(nulls), (figure,), (*shortfalls(outcomes, answers, ratio), *incomplete))
 
 
 def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
@@ -182,20 +190,20 @@ def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
         "clear": ("standard deviations from none", by.MIN_SIGNIFICANCE),
         "matters": ("fall of an error, over what matters", 1.0),
     }
-    tried = {
-        case: [one | {"together": one["bic"] + one["net"]} for one in result["tried"].values()]
+    by_case = {
+        case: [refit | {"together": refit["bic"] + refit["net"]} for refit in result["tried"].values()]
         for case, result in nulls.items()
         if "tried" in result
     }
-    every = [one for some in tried.values() for one in some]
-    if not every:
+    refits = [refit for campaign_refits in by_case.values() for refit in campaign_refits]
+    if not refits:
         return ""
     rows = []
     for name, (words, least) in rules.items():
-        others = {other: limit for other, (_, limit) in rules.items() if other != name}
+        other_rules = {rule: limit for rule, (_, limit) in rules.items() if rule != name}
         passing = {
-            case: [one[name] for one in some if all(one[other] >= limit for other, limit in others.items())]
-            for case, some in tried.items()
+            case: [refit[name] for refit in campaign_refits if all(refit[rule] >= limit for rule, limit in other_rules.items())]
+            for case, campaign_refits in by_case.items()
         }
         highest = max((value for values in passing.values() for value in values), default=None)
         alone = sum(bool(values) for values in passing.values())
@@ -203,39 +211,39 @@ def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
             (
                 words,
                 f"{least:g}",
-                f"{max(one[name] for one in every):.3g}",
-                Share(alone, len(tried)),
+                f"{max(refit[name] for refit in refits):.3g}",
+                Share(alone, len(by_case)),
                 "–" if highest is None else f"{highest:.3g}",
             )
         )
     return (
-        f"\nThe table has the threshold that an effect has to reach. {len(every)} candidates were refitted in {len(tried)} "
+        f"\nThe table has the threshold that an effect has to reach. {len(refits)} candidates were refitted in {len(by_case)} "
         "campaigns with nothing missing. *At most* is the most that they reached. *Past the others* is the most among those "
         "that pass all the other rules. A threshold has to be above that:\n\n"
         + table(("rule", "threshold", "at most", "told of an effect without the rule", "at most, past the others"), rows)
     )
 
 
-def _words(case: Case, said: Outcome, answer: Answer, result: Mapping[str, Any], ratio: float | None = None) -> str:
+def _words(case: Case, answered: Outcome, answer: Answer, result: Mapping[str, Any], ratio: float | None = None) -> str:
     """An outcome in a cell."""
     effects = named_effects(answer)
     number = f" {ratio:.2f}" if ratio is not None else ""
-    if not effects or said == "unexplained":
+    if not effects or answered == "unexplained":
         number = f" [in doubt: {', '.join(effects)}]{number}" if effects else number
         laws = result.get("laws", {}).items()
         words = "; ".join(f"{motion} by {', '.join(terms)} ({100 * part:.0f} %)" for motion, (terms, part) in laws if terms)
-        return f"*{said}*{number}" + (f", a force in {words}" if words else "")
-    right = [one for one in effects if one in case.effects]
-    first, left = effects[0], effects[1:]
+        return f"*{answered}*{number}" + (f", a force in {words}" if words else "")
+    right = [effect for effect in effects if effect in case.effects]
+    first, remaining = effects[0], effects[1:]
     if len(case.effects) == 2 and right:
-        left = [one for one in effects if one not in right]
+        remaining = [effect for effect in effects if effect not in right]
         first = "both" if len(right) == 2 else f"{right[0]} alone"
-        if said == "in the set":  # the other is among those that one of these cannot be told from
+        if answered == "in the set":  # the other is among those that one of these cannot be told from
             (missing,) = set(case.effects) - set(right)
-            sets = [one.indistinguishable_from for one in answer.effects]
+            sets = [claim.indistinguishable_from for claim in answer.effects]
             partner = next(name for name, alike in zip(effects, sets, strict=True) if missing in alike)
             first = f"{right[0]}, {partner} or {missing}"
-            left = [one for one in left if one != partner]
-    elif said in ("named", "in the set"):
-        first = "named" if said == "named" else f"{first} or it"
-    return first + (f" [{', '.join(left)}]" if left else "") + number
+            remaining = [effect for effect in remaining if effect != partner]
+    elif answered in ("named", "in the set"):
+        first = "named" if answered == "named" else f"{first} or it"
+    return first + (f" [{', '.join(remaining)}]" if remaining else "") + number

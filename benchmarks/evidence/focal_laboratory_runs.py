@@ -41,13 +41,13 @@ def gauge_and_point(run: Any, record: Any, water: Any, frequency: np.ndarray, mo
     def errors(unknown: np.ndarray) -> np.ndarray:
         distance, height, ahead = unknown
         shift = np.exp(1j * k * distance)
-        both = np.concatenate(
+        misfits = np.concatenate(
             [
                 (flow["surge"] * shift + height * pitch) / surge - 1,
                 (flow["heave"] * shift - ahead * pitch) / heave - 1,
             ]
         )
-        return np.concatenate([both.real, both.imag])
+        return np.concatenate([misfits.real, misfits.imag])
 
     distance, height, ahead = least_squares(errors, np.zeros(3)).x
     return {"distance": float(distance), "height": float(height), "ahead": float(ahead), "lines": float(len(lines))}

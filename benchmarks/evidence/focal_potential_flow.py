@@ -24,8 +24,8 @@ def linear_motions() -> tuple[np.ndarray, np.ndarray]:
 
     model = load_model(FOLDER / "focal-c2" / "platform.yaml")
     water, body = model.environment, np.asarray(model.body.mass_matrix())
-    rest = np.asarray(equilibrium(model))
-    stiffness = np.asarray(linearised(model, jnp.asarray(rest))[1])
+    mean = np.asarray(equilibrium(model))
+    stiffness = np.asarray(linearised(model, jnp.asarray(mean))[1])
     added: dict[float, np.ndarray] = {}
     forces: dict[float, np.ndarray] = {}
     for line in (FOLDER / "focal-c4" / "wamit" / "semi.1").read_text().splitlines():
@@ -44,7 +44,7 @@ def linear_motions() -> tuple[np.ndarray, np.ndarray]:
         omega = 2 * np.pi / period
         impedance = added[period] - omega**2 * body + 1j * omega * np.diag(DAMPED) + stiffness
         k = float(wavenumber(jnp.asarray(omega), water.depth, water.gravity))
-        motions.append(np.linalg.solve(impedance, forces[period]) * np.exp(-1j * k * rest[0]))  # it rests behind the gauge
+        motions.append(np.linalg.solve(impedance, forces[period]) * np.exp(-1j * k * mean[0]))  # it rests behind the gauge
     return 1 / np.array(periods), np.array(motions)
 
 

@@ -35,14 +35,14 @@ def of_seed(name: str) -> dict[str, Any]:
 
     method, seed = name.rsplit("-", 1)
     task = Task(*set_up_search(campaign()), None, Budget(seconds=BUDGET))
-    found = run_search(task, POPULATIONS.get(method, MultiStart)(), int(seed))
+    best = run_search(task, POPULATIONS.get(method, MultiStart)(), int(seed))
     return {
-        "objective": found.objective,
-        "simulations": found.simulations,
-        "seconds": found.seconds,
-        "ended": found.ended,
-        "values": found.values,
-        "history": [column.tolist() for column in found.history],
+        "objective": best.objective,
+        "simulations": best.simulations,
+        "seconds": best.seconds,
+        "ended": best.ended,
+        "values": best.values,
+        "history": [column.tolist() for column in best.history],
     }
 
 
@@ -70,30 +70,30 @@ def run(figures: Path, processes: int) -> Section:
     sources = key()
     # turn by turn, so that what else the machine does falls on all alike
     names = [f"{method}-{seed}" for seed in range(1, SEEDS + 1) for method in NAMES]
-    found: dict[str, dict[str, dict[str, Any]]] = {method: {} for method in NAMES}
-    for name, one in parallel("global_search", sources, names, of_seed, processes):
+    by_method: dict[str, dict[str, dict[str, Any]]] = {method: {} for method in NAMES}
+    for name, result in parallel("global_search", sources, names, of_seed, processes):
         method, seed = name.rsplit("-", 1)
-        found[method][seed] = one
-        say(f"  {name}: J {one['objective']:.5f}, {one['simulations']:.0f} simulations, {one['seconds']:.0f} s CPU")
-    results = {method: [runs[seed] for seed in sorted(runs, key=int)] for method, runs in found.items() if runs}
-    best = min((one for runs in results.values() for one in runs), key=lambda one: one["objective"])
+        by_method[method][seed] = result
+        say(f"  {name}: J {result['objective']:.5f}, {result['simulations']:.0f} simulations, {result['seconds']:.0f} s CPU")
+    results = {method: [runs[seed] for seed in sorted(runs, key=int)] for method, runs in by_method.items() if runs}
+    best = min((search for runs in results.values() for search in runs), key=lambda search: search["objective"])
     floor = cached("global_search", sources, f"handicap-{best['objective']:.8g}", lambda: handicap(best["values"]))
     return conclude(results, best["objective"], floor, figures)
 
 
-def reached(one: dict[str, Any], target: float) -> tuple[float, float] | None:
+def reached(search: dict[str, Any], target: float) -> tuple[float, float] | None:
     """Simulations and CPU seconds when a search came down to a J; None if it never did."""
-    simulations, seconds, objective = one["history"]
-    there = np.flatnonzero(np.array(objective) <= target)
-    return (simulations[there[0]], seconds[there[0]]) if len(there) else None
+    simulations, seconds, objective = search["history"]
+    close = np.flatnonzero(np.array(objective) <= target)
+    return (simulations[close[0]], seconds[close[0]]) if len(close) else None
 
 
 def conclude(results: dict[str, list[dict[str, Any]]], best: float, floor: float, figures: Path) -> Section:
     """The table, its words and its figure."""
     rows, medians, share = [], {}, {}
     for method, runs in results.items():
-        j = np.array([one["objective"] for one in runs])
-        near = [at for one in runs if (at := reached(one, CLOSE * best)) is not None]
+        j = np.array([search["objective"] for search in runs])
+        near = [at for search in runs if (at := reached(search, CLOSE * best)) is not None]
         share[method] = len(near) / len(runs)
         medians[method] = np.median(near, axis=0) if near else None
         to = [f"{value:.{digits}f}" for value, digits in zip(np.median(near, axis=0), (0, 1))] if near else ["–", "–"]
@@ -104,8 +104,8 @@ def conclude(results: dict[str, list[dict[str, Any]]], best: float, floor: float
                 f"{number(float(j.min()), 3)} to {number(float(j.max()), 3)}",
                 f"{len(near)} of {len(runs)}",
                 *to,
-                f"{np.median([one['simulations'] for one in runs]):.0f}",
-                f"{np.median([one['seconds'] for one in runs]):.0f}",
+                f"{np.median([search['simulations'] for search in runs]):.0f}",
+                f"{np.median([search['seconds'] for search in runs]):.0f}",
             )
         )
     seeds = max(len(runs) for runs in results.values())
@@ -162,16 +162,16 @@ def comparison(results: dict[str, list[dict[str, Any]]], medians: dict[str, Any]
                 "multi-start to come within 1 %, where it did."
             )
             continue
-        ended = float(np.median([one["objective"] for one in results[method]]))
-        sooner = [at for one in ours if (at := reached(one, ended)) is not None]
-        spent = np.median([(one["simulations"], one["seconds"]) for one in results[method]], axis=0)
-        there = f" Multi-start did not come to its median J, {number(ended, 3)}, either."
+        ended = float(np.median([search["objective"] for search in results[method]]))
+        sooner = [at for search in ours if (at := reached(search, ended)) is not None]
+        spent = np.median([(search["simulations"], search["seconds"]) for search in results[method]], axis=0)
+        multi_start_note = f" Multi-start did not come to its median J, {number(ended, 3)}, either."
         if sooner:
             simulations, seconds = np.median(sooner, axis=0)
             many, long = spent / (simulations, seconds)
-            there = (
+            multi_start_note = (
                 f" Its median J, {number(ended, 3)}, multi-start has after {simulations:.0f} simulations and "
                 f"{seconds:.1f} s (medians): {many:.0f} times fewer and {long:.0f} times sooner."
             )
-        lines.append(f"- {NAMES[method]} did not come within 1 % from any seed.{there}")
+        lines.append(f"- {NAMES[method]} did not come within 1 % from any seed.{multi_start_note}")
     return "\n".join(lines) + "\n"

@@ -10,11 +10,11 @@ COLOURS = {"multistart": "#d1495b", "cma-es": "#2f7f86", "de": "#4f6db0", "ga": 
 
 def steps(runs: list[dict[str, Any]], column: int, at: np.ndarray) -> np.ndarray:
     """The least J so far (run, at); nan before a run's first."""
-    found = np.full((len(runs), len(at)), np.nan)
-    for row, one in zip(found, runs, strict=True):
-        place = np.searchsorted(np.array(one["history"][column]), at, side="right") - 1
-        row[place >= 0] = np.array(one["history"][2])[place[place >= 0]]
-    return found
+    least = np.full((len(runs), len(at)), np.nan)
+    for row, search in zip(least, runs, strict=True):
+        step = np.searchsorted(np.array(search["history"][column]), at, side="right") - 1
+        row[step >= 0] = np.array(search["history"][2])[step[step >= 0]]
+    return least
 
 
 def draw(results: dict[str, list[dict[str, Any]]], names: dict[str, str], best: float, path: Path) -> Path:
@@ -29,8 +29,8 @@ def draw(results: dict[str, list[dict[str, Any]]], names: dict[str, str], best: 
         axes = figure.subplots(1, 2, sharey=True)
         for column, (ax, label) in enumerate(zip(axes, ("Simulations of a record", "CPU time (s)"), strict=True)):
             for method, runs in results.items():
-                first = max(one["history"][column][0] for one in runs)
-                last = max(one["history"][column][-1] for one in runs)
+                first = max(search["history"][column][0] for search in runs)
+                last = max(search["history"][column][-1] for search in runs)
                 at = np.geomspace(max(first, 1e-2), last, 400)
                 j = steps(runs, column, at)
                 shown = np.isfinite(j).all(axis=0)

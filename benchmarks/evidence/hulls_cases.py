@@ -52,8 +52,8 @@ def two_members(platform: dict[str, Any]) -> dict[str, Any]:
     A base does not pierce the surface, so that it has to be told to diffract as the stepped column does.
     """
     same = {"group": "column", "heading": [60, 180, 300]}
-    others = [member for member in platform["members"] if member["name"] != "offset_column"]
-    return platform | {"members": [*others, BASES | same, UPPER | same]}
+    members = [member for member in platform["members"] if member["name"] != "offset_column"]
+    return platform | {"members": [*members, BASES | same, UPPER | same]}
 
 
 LENGTHS = {"d", "rA", "rB", "stations", "depth", "centre_of_mass", "displaced_volume"}

@@ -112,10 +112,10 @@ def loads_of(platform: dict[str, Any], heave: float, afloat_too: bool = True) ->
         elif a[2] + heave >= 0:
             continue
 
-        found = pieces(member, heave)
+        wetted = pieces(member, heave)
         afloat = 0 < wet < 1 and not column
         closed = 0.0 if afloat else 1.0  # the body's own volume in the waves
-        for first, last in found:
+        for first, last in wetted:
             share = first + (np.arange(SLICES) + 0.5) / SLICES * (last - first)
             size = sections(member, share)
             volumes = shape * size[0] * size[1] * wet * length * (last - first) / SLICES
@@ -145,9 +145,9 @@ def loads_of(platform: dict[str, Any], heave: float, afloat_too: bool = True) ->
                     mass = rho * c["Ca_z"] * 2 / 3 * math.pi * abs(radii[i + 1] ** 3 - radii[i] ** 3) if column else 0.0
                     rows.append((points[:, i], axis, mass, mass, grown, 0.0))
         ends = [
-            (found[0][0], found[0][0], 1.0),
-            *((u[1], v[0], 0.0) for u, v in itertools.pairwise(found)),
-            (found[-1][1], found[-1][1], -1.0),
+            (wetted[0][0], wetted[0][0], 1.0),
+            *((u[1], v[0], 0.0) for u, v in itertools.pairwise(wetted)),
+            (wetted[-1][1], wetted[-1][1], -1.0),
         ]
         for below, above, way in ends:  # bottom, steps, top
             sizes = [
@@ -276,6 +276,6 @@ class Hull:
         force = self.loads.lever @ (inertia * (direction * flow).sum(axis=0) + self.loads.area * pressure)
         dynamic = self.stiffness - omega**2 * (self.mass + self.added) + 1j * omega * self.damping
         held = np.abs(dynamic).sum(axis=1) > 0
-        found = np.zeros(6, complex)
-        found[held] = np.linalg.solve(dynamic[np.ix_(held, held)], force[held])
-        return found
+        motions = np.zeros(6, complex)
+        motions[held] = np.linalg.solve(dynamic[np.ix_(held, held)], force[held])
+        return motions

@@ -56,23 +56,23 @@ def period_rows(name: str, results: dict[str, Any], panels: dict[str, Any]) -> l
                 )
             )
     dof = worst(results["periods"], results["reference"]["periods"])
-    ours, theirs = results["periods"][dof], results["reference"]["periods"][dof]
+    ours, reference = results["periods"][dof], results["reference"]["periods"][dof]
     rows.append(
         (
             TITLES[name],
             f"periods, largest difference: {dof} (s)",
             f"{ours:.4f}",
-            f"{theirs:.4f}",
-            percent(ours / theirs - 1),
+            f"{reference:.4f}",
+            percent(ours / reference - 1),
             NUMPY,
         )
     )
     return rows
 
 
-def worst(ours: dict[str, float], theirs: dict[str, float]) -> str:
+def worst(ours: dict[str, float], reference: dict[str, float]) -> str:
     """Which of the values that both have differs most."""
-    return max((dof for dof in ours if dof in theirs), key=lambda dof: abs(ours[dof] / theirs[dof] - 1))
+    return max((dof for dof in ours if dof in reference), key=lambda dof: abs(ours[dof] / reference[dof] - 1))
 
 
 def motion_rows(name: str, case: Case, results: dict[str, Any], panels: dict[str, Any]) -> list[tuple[str, ...]]:
@@ -81,10 +81,10 @@ def motion_rows(name: str, case: Case, results: dict[str, Any], panels: dict[str
     for dof in case.moved:
         quantity = f"{dof} in waves of {case.period:g} s ({UNITS[dof]})"
         ours = results["motion"][dof]
-        others = [(results["reference"]["motion"][dof], NUMPY)]
+        references = [(results["reference"]["motion"][dof], NUMPY)]
         if name in panels:
-            others.append((panels[name]["wave"]["motion"][dof], PANELS))
-        rows += [(TITLES[name], quantity, f"{ours:.4g}", f"{x:.4g}", percent(ours / x - 1), source) for x, source in others]
+            references.append((panels[name]["wave"]["motion"][dof], PANELS))
+        rows += [(TITLES[name], quantity, f"{ours:.4g}", f"{x:.4g}", percent(ours / x - 1), source) for x, source in references]
     return rows
 
 

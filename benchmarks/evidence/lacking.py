@@ -81,7 +81,7 @@ def numbers(folder: Path, name: str) -> dict[str, Any]:
     from calibration.results.result_folder import DIAGNOSIS_FILE
     from jaxhydro.analysis.motion_bands import bands
 
-    found = json.loads((folder / DIAGNOSIS_FILE).read_text())
+    diagnosis = json.loads((folder / DIAGNOSIS_FILE).read_text())
     tests = load_campaign(campaign_of(name)).manifest.tests
     periods = {test.id: test.peak_period for test in tests if test.kind == "irregular"}
     correlation: dict[str, Any] = {}
@@ -96,8 +96,8 @@ def numbers(folder: Path, name: str) -> dict[str, Any]:
                 }
                 pair = [float(np.corrcoef(slow["measured"], slow[k])[0, 1]) for k in ("before", "simulated")]
                 correlation.setdefault(test, {})[dof] = pair
-    kept = ("missing", "baseline", "augmented", "tests", "notes", "seconds", "next_test")
-    return {k: found[k] for k in kept} | {"correlation": correlation}
+    copied = ("missing", "baseline", "augmented", "tests", "notes", "seconds", "next_test")
+    return {k: diagnosis[k] for k in copied} | {"correlation": correlation}
 
 
 def run(figures: Path, processes: int) -> Section:
@@ -106,7 +106,7 @@ def run(figures: Path, processes: int) -> Section:
     results = {}
     for name, result in parallel("lacking", key(), list(CASES)[::-1], work, processes):
         results[name] = result
-        names = [one["effect"] for one in result["missing"]["effects"]]
+        names = [effect["effect"] for effect in result["missing"]["effects"]]
         say(f"  {name}: {', '.join(names) or result['missing']['verdict']} ({result['seconds']:.0f} s)")
     results = {name: results[name] for name in CASES}
     path = figures / "focal-closed.png"
@@ -130,16 +130,16 @@ def draw(name: str, path: Path) -> None:
     looks = {"measured": (MEASURED, 1.3), "before": (BEFORE, 1.0), "simulated": (SIMULATED, 0.8)}
     names = {"measured": "measured", "before": "baseline", "simulated": "with what was found"}
     with xr.open_dataset(written_to(name) / "simulated.nc") as motion, style():
-        here = motion.sel(test=held.id)
-        time = here.time.values - here.time.values[0]
+        motions = motion.sel(test=held.id)
+        time = motions.time.values - motions.time.values[0]
         figure, axes = stack([1.0, 1.0])
         artists = {}
         for ax, dof in zip(axes, ("surge", "pitch"), strict=True):
             low, high = bands(dof, held.peak_period)["low_frequency"]
             for kind, (colour, width) in looks.items():
-                values = within(here[kind].sel(channel=dof).values, low, high, float(time[1] - time[0]))
-                some = time[: len(values)] < SHOWN
-                (artists[names[kind]],) = ax.plot(time[: len(values)][some], values[some], color=colour, lw=width)
+                values = within(motions[kind].sel(channel=dof).values, low, high, float(time[1] - time[0]))
+                shown = time[: len(values)] < SHOWN
+                (artists[names[kind]],) = ax.plot(time[: len(values)][shown], values[shown], color=colour, lw=width)
             ax.set_ylabel(f"Slow {dof} ({unit_of(dof)})")
         axes[-1].set_xlabel("Time (s)")
         header(figure, f"FOCAL campaign 2, {held.id}, which was not fitted", artists, columns=3)
@@ -156,22 +156,22 @@ def intro() -> str:
     )
 
 
-def words(found: dict[str, Any]) -> str:
+def words(diagnosis: dict[str, Any]) -> str:
     """A campaign's part of the section."""
-    missing = found["missing"]
+    missing = diagnosis["missing"]
     share = percent(missing["unexplained"]["share"])
-    took = f"{found['seconds'] / 60:.0f} minutes" if found["seconds"] > 90 else f"{found['seconds']:.0f} s"
+    took = f"{diagnosis['seconds'] / 60:.0f} minutes" if diagnosis["seconds"] > 90 else f"{diagnosis['seconds']:.0f} s"
     text = f"Verdict: *{missing['verdict'].replace('_', ' ')}*, {took}. "
     text += f"{share} of the error's energy is left: {missing['unexplained']['signature'].rstrip('.')}.\n\n"
     # but for the name of a file
-    notes = [note if "." in note.split(",")[0] else note[0].upper() + note[1:] for note in found["notes"]]
+    notes = [note if "." in note.split(",")[0] else note[0].upper() + note[1:] for note in diagnosis["notes"]]
     text += "".join(f"{note.rstrip('.')}.\n\n" for note in notes)
     if missing["effects"]:
         head = ("Found", "Parameter", "Value ± 1 sd", "BIC falls by", "Held-out gain", "Cannot be told from")
-        text += table(head, effects(found)) + "\n"
-    if decays := decay_rows(found):
+        text += table(head, effects(diagnosis)) + "\n"
+    if decays := decay_rows(diagnosis):
         text += table(("Decay", "use", "RMSE over sd, before", "after"), decays) + "\n"
-    if seas := sea_rows(found):
+    if seas := sea_rows(diagnosis):
         text += (
             table(
                 (
@@ -194,15 +194,15 @@ def words(found: dict[str, Any]) -> str:
     return text
 
 
-def effects(found: dict[str, Any]) -> list[tuple[str, ...]]:
+def effects(diagnosis: dict[str, Any]) -> list[tuple[str, ...]]:
     """A row for every parameter of what was found."""
     rows = []
-    for one in found["missing"]["effects"]:
-        evidence = one["evidence"]
+    for effect in diagnosis["missing"]["effects"]:
+        evidence = effect["evidence"]
         gain = "–" if evidence["holdout_gain"] is None else percent(evidence["holdout_gain"])
-        head = (" ".join(filter(None, (f"`{one['effect']}`", one["degree_of_freedom"]))),)
-        tail = (number(evidence["delta_bic"], 3), gain, ", ".join(one["indistinguishable_from"]) or "–")
-        for i, (name, value) in enumerate(one["parameters"].items()):
+        head = (" ".join(filter(None, (f"`{effect['effect']}`", effect["degree_of_freedom"]))),)
+        tail = (number(evidence["delta_bic"], 3), gain, ", ".join(effect["indistinguishable_from"]) or "–")
+        for i, (name, value) in enumerate(effect["parameters"].items()):
             deviation = value["standard_deviation"]
             about = "" if deviation is None else f" ± {number(deviation, 1)}"
             size = f"{number(value['value'], 3)}{about} {value['unit']}"
@@ -210,39 +210,39 @@ def effects(found: dict[str, Any]) -> list[tuple[str, ...]]:
     return rows
 
 
-def stages(found: dict[str, Any]) -> list[dict[str, Any]]:
+def stages(diagnosis: dict[str, Any]) -> list[dict[str, Any]]:
     """Errors by test before and after."""
-    return [found[k]["error"] for k in ("baseline", "augmented")]
+    return [diagnosis[k]["error"] for k in ("baseline", "augmented")]
 
 
-def decay_rows(found: dict[str, Any]) -> list[tuple[str, ...]]:
-    before, after = stages(found)
+def decay_rows(diagnosis: dict[str, Any]) -> list[tuple[str, ...]]:
+    before, after = stages(diagnosis)
     rows = []
     for test, errors in before.items():
-        for channel, one in errors.items():
-            if test not in found["correlation"] and isinstance(one, dict) and one.get("in_objective"):
-                both = (percent(one["relative"]), percent(after[test][channel]["relative"]))
-                rows.append((f"{test}, {channel}", errors["use"], *both))
+        for channel, error in errors.items():
+            if test not in diagnosis["correlation"] and isinstance(error, dict) and error.get("in_objective"):
+                ratios = (percent(error["relative"]), percent(after[test][channel]["relative"]))
+                rows.append((f"{test}, {channel}", errors["use"], *ratios))
     return rows
 
 
-def sea_rows(found: dict[str, Any]) -> list[tuple[str, ...]]:
-    before, after = stages(found)
+def sea_rows(diagnosis: dict[str, Any]) -> list[tuple[str, ...]]:
+    before, after = stages(diagnosis)
     rows = []
-    for test, pairs in found["correlation"].items():
+    for test, pairs in diagnosis["correlation"].items():
         for dof in MOTIONS:
-            both = (before[test], after[test])
-            cells = [f"{100 * one['bands'][dof][band]:+.0f} %" for band in BANDS for one in both]
-            cells += [percent(one[dof]["relative"]) for one in both] + [f"{x:.2f}" for x in pairs[dof]]
+            stage_errors = (before[test], after[test])
+            cells = [f"{100 * errors['bands'][dof][band]:+.0f} %" for band in BANDS for errors in stage_errors]
+            cells += [percent(errors[dof]["relative"]) for errors in stage_errors] + [f"{x:.2f}" for x in pairs[dof]]
             rows.append((test, before[test]["use"], dof, *cells))
     return rows
 
 
-def short_of(name: str, found: dict[str, Any]) -> list[str]:
+def short_of(name: str, diagnosis: dict[str, Any]) -> list[str]:
     """What falls short of the aims in seas that were not fitted."""
     short = []
-    for test, pairs in found["correlation"].items():
-        after = found["augmented"]["error"][test]
+    for test, pairs in diagnosis["correlation"].items():
+        after = diagnosis["augmented"]["error"][test]
         if after["use"] != "holdout":
             continue
         off = [

@@ -101,15 +101,15 @@ def lower(test: Any) -> dict[str, Any]:
     from jaxhydro.analysis.spectral import band_integral
     from jaxhydro.analysis.transfer_functions import transfer_function
 
-    time, both = test.fit.time, channels(test)
-    surge = both["surge"][1] + KEEL * np.radians(both["pitch"][1])
+    time, motions = test.fit.time, channels(test)
+    surge = motions["surge"][1] + KEEL * np.radians(motions["pitch"][1])
     limits = bands("surge", test.peak_period)
     h = transfer_function(time, test.wave, surge, SEGMENT)
     lines = [int(np.argmin(np.abs(h.frequency - f))) for f in AT]
     arms = []
     for motion, angle in (("surge", "pitch"), ("sway", "roll")):
-        turn = np.radians(both[angle][0])
-        arm = transfer_function(time, turn, both[motion][0], 500.0)
+        turn = np.radians(motions[angle][0])
+        arm = transfer_function(time, turn, motions[motion][0], 500.0)
         i = int(np.argmin(np.abs(arm.frequency - RESONANCE)))
         arms.append([float(arm.amplitude[i] * np.cos(arm.phase[i])), float(arm.coherence[i])])
     return {
@@ -128,16 +128,16 @@ def spectra(test: Any) -> dict[str, Any]:
     from jaxhydro.analysis.transfer_functions import transfer_function
 
     results: dict[str, Any] = {"mean": {}, "deviation": {}, "density": {}, "response": {}}
-    time, both = test.fit.time, channels(test)
+    time, motions = test.fit.time, channels(test)
     for name in UNITS:
-        results["mean"][name] = [float(x.mean()) for x in both[name]]
-        results["deviation"][name] = [float(x.std()) for x in both[name]]
-        each = [density(test, x) for x in both[name]]
-        inside = (each[0].frequency > 0) & (each[0].frequency <= HIGHEST)
-        results["frequency"] = each[0].frequency[inside].tolist()
-        results["density"][name] = [spectrum.density[inside].tolist() for spectrum in each]
+        results["mean"][name] = [float(x.mean()) for x in motions[name]]
+        results["deviation"][name] = [float(x.std()) for x in motions[name]]
+        both_spectra = [density(test, x) for x in motions[name]]
+        inside = (both_spectra[0].frequency > 0) & (both_spectra[0].frequency <= HIGHEST)
+        results["frequency"] = both_spectra[0].frequency[inside].tolist()
+        results["density"][name] = [spectrum.density[inside].tolist() for spectrum in both_spectra]
         if name != "wave":
-            h = [transfer_function(time, test.wave, x, SEGMENT) for x in both[name]]
+            h = [transfer_function(time, test.wave, x, SEGMENT) for x in motions[name]]
             lines = [int(np.argmin(np.abs(h[0].frequency - f))) for f in AT]
             results["response"][name] = [[float(v[i]) for spectrum in h for v in spectrum[1:]] for i in lines]
     return results

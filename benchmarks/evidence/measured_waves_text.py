@@ -41,8 +41,10 @@ def power(seas: dict[str, Any], index: int, channel: str = "surge", band: str = 
 
 def shortcomings(result: dict[str, Any]) -> tuple[str, ...]:
     """What the model with the paper's coefficients misses."""
-    each = [f"{c} {', '.join(f'{off(s, c, band):+.0f}' for s in result['seas'].values())} %" for band in BANDS for c in MOTIONS]
-    low, wave = "; ".join(each[:3]), "; ".join(each[3:])
+    deviations = [
+        f"{c} {', '.join(f'{off(s, c, band):+.0f}' for s in result['seas'].values())} %" for band in BANDS for c in MOTIONS
+    ]
+    low, wave = "; ".join(deviations[:3]), "; ".join(deviations[3:])
     return (
         f"focal-c2 in its three seas, Table 1's coefficients, unfitted. Low-frequency energy: {low}. "
         f"Wave-frequency energy: {wave}",
@@ -136,8 +138,8 @@ def conclusions(results: dict[str, dict[str, Any]], potential: dict[str, list[li
         for b in BANDS
     )
 
-    def amounts(each: dict[str, list[str]]) -> str:
-        return ", ".join(f"{c} {', '.join(each[c])}" for c in MOTIONS)
+    def amounts(amounts_by_motion: dict[str, list[str]]) -> str:
+        return ", ".join(f"{c} {', '.join(amounts_by_motion[c])}" for c in MOTIONS)
 
     return [
         "What it shows, with Table 1's coefficients, order 2 and MacCamy-Fuchs unless said:",
@@ -202,8 +204,8 @@ def means(results: dict[str, dict[str, Any]]) -> list[str]:
     names = ("fitted", "fitted-1", "tuned", "tuned-1")
     rows = []
     for name in results["tuned"]["seas"]:
-        each = [results[n]["seas"][name]["mean"]["surge"] for n in names]
-        rows.append((f"mean surge in {name} (m)", number(each[0][0], 3), *(number(x[1], 3) for x in each)))
+        mean_surges = [results[n]["seas"][name]["mean"]["surge"] for n in names]
+        rows.append((f"mean surge in {name} (m)", number(mean_surges[0][0], 3), *(number(x[1], 3) for x in mean_surges)))
     for c in MOTIONS:
         for b in BANDS:
             grown = [f"{power(results[n]['seas'], 1, c, b):.2f}" for n in names]

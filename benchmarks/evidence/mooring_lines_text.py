@@ -30,16 +30,16 @@ def of_moordyn(run: dict[str, Any], heavy: float) -> dict[str, Any]:
     return {"lines": lines, "force": force.sum(axis=0).tolist(), "printed": run["fairlead_segment"]}
 
 
-def differences(ours: dict[str, Any], theirs: dict[str, Any]) -> dict[str, float]:
+def differences(ours: dict[str, Any], moordyn: dict[str, Any]) -> dict[str, float]:
     """Relative differences of MoorDyn from jaxhydro: a stretched line, a slacker one, the total force."""
     apart = {
-        f"{quantity}, line {i + 1}": theirs["lines"][i][quantity] / ours["lines"][i][quantity] - 1
+        f"{quantity}, line {i + 1}": moordyn["lines"][i][quantity] / ours["lines"][i][quantity] - 1
         for quantity in QUANTITIES
         for i in (STRETCHED, SLACKER)
     }
-    apart["vertical pull"] = theirs["force"][2] / ours["force"][2] - 1
+    apart["vertical pull"] = moordyn["force"][2] / ours["force"][2] - 1
     if ours["offset"]:
-        apart["restoring force"] = theirs["force"][0] / ours["force"][0] - 1
+        apart["restoring force"] = moordyn["force"][0] / ours["force"][0] - 1
     return apart
 
 
@@ -55,8 +55,8 @@ def compared(results: dict[str, Any], runs: list[dict[str, Any]]) -> tuple[dict,
         States by jaxhydro, by offset; states by MoorDyn, by run; and relative differences, by run.
     """
     ours = {state["offset"]: state for state in results["offsets"]}
-    theirs = {(r["offset"], r["segments"], r["bed_stiffness"]): of_moordyn(r, results["weight"]) for r in runs}
-    return ours, theirs, {run: differences(ours[run[0]], theirs[run]) for run in RUNS}
+    moordyn = {(r["offset"], r["segments"], r["bed_stiffness"]): of_moordyn(r, results["weight"]) for r in runs}
+    return ours, moordyn, {run: differences(ours[run[0]], moordyn[run]) for run in RUNS}
 
 
 def largest_differences(apart: dict[Run, dict[str, float]], segments: int) -> dict[str, float]:
@@ -72,25 +72,25 @@ def largest_differences(apart: dict[Run, dict[str, float]], segments: int) -> di
     return {"all": max(abs(x) for _, x in pairs)} | largest
 
 
-def value_rows(offset: float, ours: dict[str, Any], theirs: dict[str, Any]) -> list[tuple[str, ...]]:
+def value_rows(offset: float, ours: dict[str, Any], moordyn: dict[str, Any]) -> list[tuple[str, ...]]:
     """Rows of the first table: one offset."""
-    rows, apart = [], differences(ours, theirs)
+    rows, apart = [], differences(ours, moordyn)
     for quantity, label in QUANTITIES.items():
         scale, digits = (1.0, 2) if quantity == "on_seabed" else (1e-3, 1)
         for i in (STRETCHED, SLACKER) if offset else (STRETCHED,):
-            pair = (f"{state['lines'][i][quantity] * scale:,.{digits}f}" for state in (ours, theirs))
+            pair = (f"{state['lines'][i][quantity] * scale:,.{digits}f}" for state in (ours, moordyn))
             of_what = f"line {i + 1}" if offset else "each line"
             rows.append((f"{offset:g}", f"{of_what}, {label}", *pair, percent(apart[f"{quantity}, line {i + 1}"])))
     for axis, label in ((2, "vertical pull"), (0, "restoring force")):
         if label in apart:
-            pair = (f"{-state['force'][axis] / 1e3:,.1f}" for state in (ours, theirs))
+            pair = (f"{-state['force'][axis] / 1e3:,.1f}" for state in (ours, moordyn))
             rows.append((f"{offset:g}", f"all lines, {label} (kN)", *pair, percent(apart[label])))
     return rows
 
 
 def words(results: dict[str, Any], runs: list[dict[str, Any]]) -> str:
     """Text of the section, from jaxhydro's results and MoorDyn's runs."""
-    ours, theirs, apart = compared(results, runs)
+    ours, moordyn, apart = compared(results, runs)
     fine, far = SEGMENTS[-1], OFFSETS[-1]
     largest = {n: largest_differences(apart, n) for n in SEGMENTS}
     labels = {key: label.split(" (")[0] for key, label in QUANTITIES.items()}
@@ -100,13 +100,13 @@ def words(results: dict[str, Any], runs: list[dict[str, Any]]) -> str:
         if quantity != "all"
     ]
     worst, finest = largest[fine]["all"], max(abs(x) for x in apart[FINEST_RUN].values())
-    softer = theirs[*STIFF_RUN[:2], BED]["lines"]
-    pairs = zip(theirs[STIFF_RUN]["lines"], softer, strict=True)
+    softer = moordyn[*STIFF_RUN[:2], BED]["lines"]
+    pairs = zip(moordyn[STIFF_RUN]["lines"], softer, strict=True)
     moved = max(abs(stiff[q] / soft[q] - 1) for stiff, soft in pairs for q in stiff)
     sunk = results["weight"] / (BED * CHAIN["diameter"])
-    printed = theirs[far, fine, BED]["printed"][STRETCHED] / ours[far]["lines"][STRETCHED]["fairlead"] - 1
+    printed = moordyn[far, fine, BED]["printed"][STRETCHED] / ours[far]["lines"][STRETCHED]["fairlead"] - 1
     changes, speed = max(r["changes"] for r in runs), max(r["speed"] for r in runs)
-    rows = [row for offset in OFFSETS for row in value_rows(offset, ours[offset], theirs[offset, fine, BED])]
+    rows = [row for offset in OFFSETS for row in value_rows(offset, ours[offset], moordyn[offset, fine, BED])]
     return (
         f"Tensions, lengths on the seabed and forces are within {100 * worst:.2g} % of those of MoorDyn with {fine} "
         f"segments in each line (goal {100 * GOAL:g} %: {'met' if worst < GOAL else 'not met'}). With {SEGMENTS[0]} "

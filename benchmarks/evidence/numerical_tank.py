@@ -41,20 +41,20 @@ def run(figures: Path, processes: int) -> Section:
         runs.written_with_tables()
     sources = key()
     results: dict[str, Any] = {}
-    for name, found in parallel(runs.NAME, sources, ("declared", "calibrated", "all", "decays", "tables"), one, processes):
-        results[name] = found
-        if "verdict" in found:
-            named = [" ".join(filter(None, (x["effect"], x["motion"]))) for x in found["effects"]]
-            say(f"  {name}: {', '.join(named) or found['verdict']}, {found['seconds']:.0f} s")
+    for name, result in parallel(runs.NAME, sources, ("declared", "calibrated", "all", "decays", "tables"), one, processes):
+        results[name] = result
+        if "verdict" in result:
+            named = [" ".join(filter(None, (x["effect"], x["motion"]))) for x in result["effects"]]
+            say(f"  {name}: {', '.join(named) or result['verdict']}, {result['seconds']:.0f} s")
     law: dict[str, dict[str, float]] = {}
     for x in results["all"]["effects"]:
         if x["effect"] == "wave_drift":
             law[x["motion"]] = {label.split(".")[-1]: value for label, (value, _, _) in x["parameters"].items()}
-    known = cached(runs.NAME, truth_key(law), "truth", partial(known_of, law))
+    tank = cached(runs.NAME, truth_key(law), "truth", partial(known_of, law))
     setup = cached(runs.NAME, sources, "setup", runs.setup)
     path = figures / "numerical-tank-surge.png"
     draw(results["all"], path)
-    return Section(TITLE, words(results, known, setup), (path,), shortcomings(results))
+    return Section(TITLE, words(results, tank, setup), (path,), shortcomings(results))
 
 
 def known_of(law: dict[str, dict[str, float]]) -> dict[str, Any]:
@@ -68,11 +68,11 @@ def known_of(law: dict[str, dict[str, float]]) -> dict[str, Any]:
     }
 
 
-def draw(found: dict[str, Any], path: Path) -> None:
+def draw(diagnosis: dict[str, Any], path: Path) -> None:
     """Surge of the sea that was held out: measured, of the fitted baseline and with what was found; its slow part."""
     from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, stack, style
 
-    motions = found["motions"][runs.HELD]
+    motions = diagnosis["motions"][runs.HELD]
     time = np.array(motions["time"])
     series = dict(zip(("measured", "declared, fitted", "with what was found"), np.array(motions["surge"])))
     looks = ((MEASURED, 1.5), (BEFORE, 1.0), (SIMULATED, 0.8))

@@ -58,72 +58,72 @@ def sea_table(results: dict[str, Any]) -> str:
     return table(("Half of the sea", *columns), rows)
 
 
-def effects_table(found: dict[str, Any]) -> str:
+def effects_table(diagnosis: dict[str, Any]) -> str:
     """What was found, a row for every parameter."""
     rows = []
-    for one in found["effects"]:
-        head = one["effect"] + (f".{one['motion']}" if one["motion"] else "")
-        evidence = (number(one["bic"], 3), percent(one["held"]), f"{one['clear']:.0f}")
-        for i, (label, (value, deviation, unit)) in enumerate(one["parameters"].items()):
+    for effect in diagnosis["effects"]:
+        head = effect["effect"] + (f".{effect['motion']}" if effect["motion"] else "")
+        evidence = (number(effect["bic"], 3), percent(effect["held"]), f"{effect['clear']:.0f}")
+        for i, (label, (value, deviation, unit)) in enumerate(effect["parameters"].items()):
             size = quantity(value, deviation, unit) if deviation is not None else f"({quantity(value, None, unit)})"
-            name = plain_name(label.removeprefix(f"{head}.").removeprefix(f"{one['effect']}."))
-            about, rest = (named(one), evidence) if i == 0 else ("", ("", "", ""))
-            rows.append((about, name, size, *rest))
+            name = plain_name(label.removeprefix(f"{head}.").removeprefix(f"{effect['effect']}."))
+            about, judged_by = (named(effect), evidence) if i == 0 else ("", ("", "", ""))
+            rows.append((about, name, size, *judged_by))
     return table(("Effect", "Parameter", "Value ± 1 sd", "BIC falls by", "Held-out gain", "sd from none"), rows)
 
 
-def named(one: dict[str, Any]) -> str:
+def named(effect: dict[str, Any]) -> str:
     """An effect that was found, and whether it is in doubt."""
-    return effect_in_words(one["effect"], one["motion"]) + ("" if one["in_doubt"] is None else " (in doubt)")
+    return effect_in_words(effect["effect"], effect["motion"]) + ("" if effect["in_doubt"] is None else " (in doubt)")
 
 
-def said_of(found: dict[str, Any], effect: str, motion: str | None) -> str:
+def said_of(diagnosis: dict[str, Any], effect: str, motion: str | None) -> str:
     """What became of an effect in a motion."""
-    for one in found["effects"]:
-        if (one["effect"], one["motion"]) == (effect, motion):
+    for claim in diagnosis["effects"]:
+        if (claim["effect"], claim["motion"]) == (effect, motion):
             return "**found**"
-    for name, dof, reason in found["rejected"]:
+    for name, dof, reason in diagnosis["rejected"]:
         if (name, dof) == (effect, motion):
             return reason
     return "not tried"
 
 
-def missing_table(results: dict[str, Any], known: dict[str, Any]) -> str:
+def missing_table(results: dict[str, Any], tank: dict[str, Any]) -> str:
     """What the tank has and strips do not, its size, and what the diagnoses say of it."""
     rows = []
     for effect, motion in MISSING:
         alone = "–" if effect in IN_WAVES else said_of(results["decays"], effect, motion)
-        said = said_of(results["all"], effect, motion)
-        rows.append((effect_in_words(effect, motion), size_of(effect, motion, known), said, alone))
+        outcome = said_of(results["all"], effect, motion)
+        rows.append((effect_in_words(effect, motion), size_of(effect, motion, tank), outcome, alone))
     return table(("In the tank", "Its size", "Decays and sea", "Decays alone"), rows)
 
 
-def excitation(known: dict[str, Any]) -> str:
+def excitation(tank: dict[str, Any]) -> str:
     """The strips' first-order excitation at the waves' peak beside WAMIT's."""
-    loads = known["excitation"]
+    loads = tank["excitation"]
     shares = listed([f"{100 * a / b:.0f} % in {motion}" for motion, (a, b, _) in loads.items()])
     ahead = sorted(-math.degrees(angle) for _, _, angle in loads.values())
     return f"strips have {shares} of WAMIT's, {ahead[0]:.0f} to {ahead[-1]:.0f} deg ahead of it"
 
 
-def size_of(effect: str, motion: str | None, known: dict[str, Any]) -> str:
+def size_of(effect: str, motion: str | None, tank: dict[str, Any]) -> str:
     """How large an effect is in the tank."""
     if effect == "wave_excitation":
-        return excitation(known)
+        return excitation(tank)
     if effect == "mooring_nonlinearity":
-        moving, even, cubic = known["mooring"]["static"]
+        moving, even, cubic = tank["mooring"]["static"]
         return f"{quantity(moving, None, 'N/m')}, even {number(even, 3)} N/m², cubic {number(cubic, 3)} N/m³"
     unit = "N" if motion != "pitch" else "N m"
     if effect == "wave_drift":
-        one = known["drift"][motion]
-        return f"mean {quantity(one['mean'], None, unit)}, slow sd {quantity(one['slow'], None, unit)}"
+        force = tank["drift"][motion]
+        return f"mean {quantity(force['mean'], None, unit)}, slow sd {quantity(force['slow'], None, unit)}"
     if effect == "quadratic_damping":
         per = "N s²/m²" if motion != "pitch" else "N m s²/rad²"
-        return f"{quantity(known['quadratic'][motion], None, per)}, by the platform's own velocity"
-    one = known["radiation"][motion]
+        return f"{quantity(tank['quadratic'][motion], None, per)}, by the platform's own velocity"
+    radiation = tank["radiation"][motion]
     per = "N s/m" if motion != "pitch" else "N m s/rad"
-    waves, natural = (quantity(one["damping"][k], None, per) for k in ("waves", "natural"))
-    change = one["added"]["natural"] / one["added"]["waves"] - 1
+    waves, natural = (quantity(radiation["damping"][k], None, per) for k in ("waves", "natural"))
+    change = radiation["added"]["natural"] / radiation["added"]["waves"] - 1
     return f"damping {waves} at the waves' peak, {natural} at the natural period; added mass {100 * change:+.0f} %"
 
 
@@ -141,19 +141,19 @@ def coefficients_table(results: dict[str, Any]) -> str:
     return table(("Coefficient", "declared", *heads), rows)
 
 
-def drift_table(known: dict[str, Any]) -> str:
+def drift_table(tank: dict[str, Any]) -> str:
     """Second-order forces of the tank against the laws found."""
     rows = []
-    for motion, one in known["drift"].items():
+    for motion, force in tank["drift"].items():
         unit = "N" if motion != "pitch" else "N m"
-        law = [quantity(x, None, unit) for x in one["law"]] if one["law"] else ["–", "–"]
-        alike = f"{one['correlation']:.2f}" if one["law"] else "–"
-        rows.append((motion, quantity(one["mean"], None, unit), law[0], quantity(one["slow"], None, unit), law[1], alike))
+        law = [quantity(x, None, unit) for x in force["law"]] if force["law"] else ["–", "–"]
+        alike = f"{force['correlation']:.2f}" if force["law"] else "–"
+        rows.append((motion, quantity(force["mean"], None, unit), law[0], quantity(force["slow"], None, unit), law[1], alike))
     heads = ("Mean in the tank", "of the law found", "Slow sd in the tank", "of the law found", "Correlation")
     return table(("Second-order force", *heads), rows)
 
 
-def words(results: dict[str, Any], known: dict[str, Any], setup: dict[str, Any]) -> str:
+def words(results: dict[str, Any], tank: dict[str, Any], setup: dict[str, Any]) -> str:
     """Text of the section.
 
     Args:
@@ -161,8 +161,8 @@ def words(results: dict[str, Any], known: dict[str, Any], setup: dict[str, Any])
         known: What is known of the tank.
         setup: Numbers of the strip model.
     """
-    found, alone = results["all"], results["decays"]
-    lines, held = known["mooring"], found["objective"]["holdout"]
+    joint, alone = results["all"], results["decays"]
+    lines, held = tank["mooring"], joint["objective"]["holdout"]
     surge = [percent(stages(results)[k][HELD]["relative"]["surge"]) for k in ("calibrated to decays", "with what was found")]
     stiff, at_rest = (quantity(x, None, "N/m") for x in (setup["AddCLin"][0][0], lines["static"][0]))
     return f"""
@@ -184,10 +184,10 @@ Errors of energies in the paper's bands, (simulated - measured) / measured; the 
 deviation, offset included:
 
 {sea_table(results)}
-**Decays and sea**: {verdict_of(found)} J of the held-out half goes from {held[0]:.2f} to {held[1]:.2f}; RMSE of surge there is
+**Decays and sea**: {verdict_of(joint)} J of the held-out half goes from {held[0]:.2f} to {held[1]:.2f}; RMSE of surge there is
 {surge[1]} with what was found and {surge[0]} with the coefficients of the decays.
 
-{effects_table(found) if found["effects"] else ""}
+{effects_table(joint) if joint["effects"] else ""}
 **The decays alone**, blocks left out in turn: {verdict_of(alone)}
 
 {effects_table(alone) if alone["effects"] else ""}
@@ -202,30 +202,30 @@ excitation by their drag and a viscous damping of their own.
 {effects_table(results["tables"]) if results["tables"]["effects"] else ""}
 What the tank has and the strips do not, and what becomes of it (*slow*: in the motion's low-frequency band):
 
-{missing_table(results, known)}
-{drift_table(known)}
+{missing_table(results, tank)}
+{drift_table(tank)}
 Coefficients, in brackets those that the records do not determine:
 
 {coefficients_table(results)}
-{reasons(results, known)}
+{reasons(results, tank)}
 """
 
 
-def reasons(results: dict[str, Any], known: dict[str, Any]) -> str:
+def reasons(results: dict[str, Any], tank: dict[str, Any]) -> str:
     """Why the diagnosis says what it says."""
-    found = results["all"]
-    fits = [results["calibrated"], found["before"], found["after"]]
+    diagnosis = results["all"]
+    fits = [results["calibrated"], diagnosis["before"], diagnosis["after"]]
     damping = [quantity(fit["parameters"]["linear_damping.B11"][0], None, "N s/m") for fit in fits]
     waves = [100 * fit["errors"][FITTED]["bands"]["surge"]["wave_frequency"] for fit in fits]
     decay = [percent(fit["errors"]["surge"]["relative"]["surge"]) for fit in fits]
-    lines = known["mooring"]
-    settled = "" if all(found["converged"]) else " One of these fits had not settled when it was stopped."
+    lines = tank["mooring"]
+    settled = "" if all(diagnosis["converged"]) else " One of these fits had not settled when it was stopped."
     static, moving = lines["static"], lines["moving"]
     drifted, drifts = results["declared"]["errors"][FITTED]["mean"]["surge"]
     secants = [f"{quantity(lines['secant'][f'{x:+g}'], None, 'N/m')} ({x:+g} m)" for x in (-REACH, REACH)]
-    gauge = said_of(found, "wave_gauge_position", None)
+    gauge = said_of(diagnosis, "wave_gauge_position", None)
     return f"""
-**First-order excitation.** At the waves' peak {excitation(known)}. `wave_excitation` is a coefficient of pressure by group of
+**First-order excitation.** At the waves' peak {excitation(tank)}. `wave_excitation` is a coefficient of pressure by group of
 members and has no phase of its own. A wave gauge elsewhere would shift phases (here: {gauge}). The error of wave-frequency
 surge is {waves[0]:+.0f} % with the decays' coefficients. It is {waves[1]:+.0f} % where these are fitted to the sea as well, and
 {waves[2]:+.0f} % with what was found.
@@ -243,35 +243,35 @@ its linear part is {quantity(moving[0], None, "N/m")} beside {quantity(static[0]
 """
 
 
-def verdict_of(found: dict[str, Any]) -> str:
+def verdict_of(diagnosis: dict[str, Any]) -> str:
     """The verdict in a sentence or two."""
-    names = listed([named(one) for one in found["effects"]])
-    share, signature = found["unexplained"]
-    head = {"found": f"*found*, {names}", "nothing_missing": "*nothing missing*"}.get(found["verdict"], "*unexplained*")
-    left = f"{head}. {percent(share)} of the error's energy is left: {signature.rstrip('.')}."
-    return " ".join([left, *(f"{words.split(';')[0]}." for _, words in found["latent"])])
+    names = listed([named(effect) for effect in diagnosis["effects"]])
+    share, signature = diagnosis["unexplained"]
+    head = {"found": f"*found*, {names}", "nothing_missing": "*nothing missing*"}.get(diagnosis["verdict"], "*unexplained*")
+    verdict = f"{head}. {percent(share)} of the error's energy is left: {signature.rstrip('.')}."
+    return " ".join([verdict, *(f"{words.split(';')[0]}." for _, words in diagnosis["latent"])])
 
 
-def not_there(found: dict[str, Any], there: list[tuple[str, str | None]]) -> list[str]:
+def not_there(diagnosis: dict[str, Any], present: list[tuple[str, str | None]]) -> list[str]:
     """Names of what was found and is not in the tank."""
-    pairs = [(one["effect"], one["motion"]) for one in found["effects"]]
-    return [effect_in_words(*pair) for pair in pairs if pair not in there]
+    pairs = [(effect["effect"], effect["motion"]) for effect in diagnosis["effects"]]
+    return [effect_in_words(*pair) for pair in pairs if pair not in present]
 
 
 def shortcomings(results: dict[str, Any]) -> tuple[str, ...]:
     """What falls short."""
     errors = results["all"]["after"]["errors"]
-    left = [
+    sea_errors = [
         f"{dof} {BANDS[band]} {100 * error:+.0f} %"
         for dof in DECAYS
         for band, error in errors[HELD]["bands"][dof].items()
         if abs(error) > MENDED
     ]
     lost = [pair for pair in MISSING if "**found**" not in (said_of(results[k], *pair) for k in ("all", "decays"))]
-    decay = [one["surge"]["relative"]["surge"] for one in (results["calibrated"]["errors"], errors)]
+    decay = [fit_errors["surge"]["relative"]["surge"] for fit_errors in (results["calibrated"]["errors"], errors)]
     short = []
-    if left:
-        short.append(f"numerical tank: with what was found, the held-out sea is off by {', '.join(left)}")
+    if sea_errors:
+        short.append(f"numerical tank: with what was found, the held-out sea is off by {', '.join(sea_errors)}")
     if decay[1] > max(MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO * decay[0]):
         short.append(
             f"numerical tank: fitted with a sea, the surge decay is given up: {percent(decay[1])} of it is left with "

@@ -141,14 +141,14 @@ def drift(law: dict[str, dict[str, float]]) -> dict[str, Any]:
     results = {}
     for motion, channel in zip(DECAYS, ("B1WvsF2xi", "B1WvsF2zi", "B1WvsM2yi")):
         force = table[channel][::5][inside[::5]]
-        mine = {k: float(v) for k, v in law.get(motion, {}).items()}
-        made = sum((value * ways[way] for way, value in mine.items()), np.zeros(len(envelope)))[inside[::5]]
+        coefficients = {k: float(v) for k, v in law.get(motion, {}).items()}
+        made = sum((value * ways[way] for way, value in coefficients.items()), np.zeros(len(envelope)))[inside[::5]]
         slow, of_law = (within(x, *BANDS[motion], float(time[5] - time[0])) for x in (force, made))
         results[motion] = {
             "mean": float(force.mean()),
             "slow": float(slow.std()),
-            "law": [float(made.mean()), float(of_law.std())] if mine else None,
-            "correlation": float(np.corrcoef(slow, of_law)[0, 1]) if mine else None,
+            "law": [float(made.mean()), float(of_law.std())] if coefficients else None,
+            "correlation": float(np.corrcoef(slow, of_law)[0, 1]) if coefficients else None,
         }
     return results
 
@@ -183,7 +183,7 @@ def excitation() -> dict[str, list[float]]:
     turning = np.exp(-2j * np.pi * times / period)
     results = {}
     for motion, dof in DOF.items():
-        mine = 2 * (loads[:, dof - 1] * turning).mean() / height
-        theirs = DENSITY * GRAVITY * next(complex(row[5], row[6]) for row in rows if (row[0], row[2]) == (period, dof))
-        results[motion] = [float(abs(mine)), float(abs(theirs)), float(np.angle(theirs / mine))]
+        strip_load = 2 * (loads[:, dof - 1] * turning).mean() / height
+        wamit_load = DENSITY * GRAVITY * next(complex(row[5], row[6]) for row in rows if (row[0], row[2]) == (period, dof))
+        results[motion] = [float(abs(strip_load)), float(abs(wamit_load)), float(np.angle(wamit_load / strip_load))]
     return results

@@ -58,11 +58,11 @@ def read(name: str) -> Run:
     columns = pd.read_csv(folder / "out.csv.gz", skiprows=[1]).astype(float)
     index, omega, _, amplitude, phase = np.loadtxt(folder / "components.csv.gz", delimiter=",", skiprows=2, ndmin=2).T
     first = int(index[0])
-    every = np.zeros((2, int(index[-1]) - first + 1))
-    every[:, index.astype(int) - first] = amplitude, phase
+    bins = np.zeros((2, int(index[-1]) - first + 1))
+    bins[:, index.astype(int) - first] = amplitude, phase
     period = round(2 * np.pi * index[-1] / omega[-1])
-    harmonics = jnp.asarray(2 * np.pi / period * np.arange(first, first + every.shape[1]))
-    waves = components(jnp.asarray(every[0]), harmonics, WATER, phase=jnp.asarray(every[1]), first=first)
+    harmonics = jnp.asarray(2 * np.pi / period * np.arange(first, first + bins.shape[1]))
+    waves = components(jnp.asarray(bins[0]), harmonics, WATER, phase=jnp.asarray(bins[1]), first=first)
     case = CASES[next((part for part in name.split("_") if part in CASES), "c3")]
     return Run(case, setup, {key: columns[key].to_numpy() for key in columns}, waves)
 
@@ -115,8 +115,8 @@ def _without_set_down() -> Iterator[None]:
     """
     tiles, spectrum = pair_sums._tiles, shared_preparation._spectrum.__wrapped__
 
-    def fewer(n: int, *others: Any) -> Any:
-        pairs = tiles(n, *others)
+    def fewer(n: int, *arguments: Any) -> Any:
+        pairs = tiles(n, *arguments)
         return eqx.tree_at(lambda t: t.i, pairs, jnp.where((pairs.sign < 0) & (pairs.harmonic == 0), n, pairs.i))
 
     anew = eqx.filter_jit(lambda *a: spectrum(*a))  # nothing that was traced with all pairs
@@ -228,5 +228,5 @@ def motion(run: Run, waves: jh.AbstractSea, until: float = np.inf, step: float |
 
 def missed(run: Run, times: np.ndarray, motions: dict[str, np.ndarray]) -> dict[str, float]:
     """Root mean square difference of each motion over OpenFAST's standard deviation (-)."""
-    theirs = {dof: run.table[channel][::2][: times.size] for dof, channel in CHANNELS.items()}
-    return {dof: float(np.sqrt(((motions[dof] - x) ** 2).mean()) / x.std()) for dof, x in theirs.items()}
+    openfast = {dof: run.table[channel][::2][: times.size] for dof, channel in CHANNELS.items()}
+    return {dof: float(np.sqrt(((motions[dof] - x) ** 2).mean()) / x.std()) for dof, x in openfast.items()}

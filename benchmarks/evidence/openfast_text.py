@@ -19,17 +19,17 @@ def compared(motions: dict[str, Any]) -> dict[str, np.ndarray]:
     from jaxhydro.dynamics.response import decay_cycles
 
     time, reference, motion = (np.asarray(motions[k]) for k in ("time", "openfast", "jaxhydro"))
-    theirs, ours = decay_cycles(time, reference), decay_cycles(time, motion)
-    n = min(2 * CYCLES, len(theirs.period), len(ours.period))
-    first = time <= CYCLES * theirs.period.mean()
+    openfast, ours = decay_cycles(time, reference), decay_cycles(time, motion)
+    n = min(2 * CYCLES, len(openfast.period), len(ours.period))
+    first = time <= CYCLES * openfast.period.mean()
     amplitude = np.abs(reference[0])
     difference = np.abs(motion - reference)
     return {
-        "period": ours.period[:n] / theirs.period[:n] - 1,
-        "amplitude": ours.amplitude[:n] / theirs.amplitude[:n] - 1,
+        "period": ours.period[:n] / openfast.period[:n] - 1,
+        "amplitude": ours.amplitude[:n] / openfast.amplitude[:n] - 1,
         "largest": difference[first].max() / amplitude,
         "rms": np.sqrt((difference[first] ** 2).mean()) / amplitude,
-        "mean_period": theirs.period[:n].mean(),
+        "mean_period": openfast.period[:n].mean(),
         "our_period": ours.period[:n].mean(),
         "released": amplitude,
     }
@@ -45,10 +45,10 @@ def drift(motions: dict[str, Any]) -> float:
 
     slopes = []
     for sign in (1, -1):
-        theirs, ours = crossings(sign * reference), crossings(sign * motion)
-        n = min(len(theirs), len(ours))
+        openfast, ours = crossings(sign * reference), crossings(sign * motion)
+        n = min(len(openfast), len(ours))
         late = slice(min(CYCLES, n // 2) - 1, n)
-        slopes.append(np.polyfit(theirs[late], (ours[:n] - theirs[:n])[late], 1)[0])
+        slopes.append(np.polyfit(openfast[late], (ours[:n] - openfast[:n])[late], 1)[0])
     return float(np.mean(slopes))
 
 

@@ -63,7 +63,7 @@ def free(name: str) -> dict[str, Any]:
 
     run = of.read(name)
     times, ours = of.motion(run, of.sea(run))
-    theirs = {dof: run.table[channel][::2] for dof, channel in of.CHANNELS.items()}
+    openfast = {dof: run.table[channel][::2] for dof, channel in of.CHANNELS.items()}
     first = times <= 600
     _, half = of.motion(run, of.sea(run), step=0.125)
     results = {
@@ -72,7 +72,7 @@ def free(name: str) -> dict[str, Any]:
         "step": of.missed(run, times, half),
         "first": of.missed(run, times[first], {k: x[first] for k, x in ours.items()}),
         "ours": energies(times, ours, run.setup["Tp"]),
-        "theirs": energies(times, theirs, run.setup["Tp"]),
+        "theirs": energies(times, openfast, run.setup["Tp"]),
         "others": max(float(np.abs(ours[k]).max()) for k in ("sway", "roll", "yaw")),
     }
     if run.case.order == 2 and not name.startswith("free"):

@@ -35,12 +35,12 @@ def percent(value: float, digits: int = 2) -> str:
 def of_loads(loads: dict[str, Any]) -> str:
     """The table of the held platform."""
     rows = []
-    for case, both in loads.items():
-        nodes = both.get("nodes")
+    for case, differences in loads.items():
+        nodes = differences.get("nodes")
         rows.append(
             (
                 f"`fixed_comp_{case}`",
-                *(percent(both["gauss"][x]["rms"], 3) for x in ("Fx", "Fz", "My")),
+                *(percent(differences["gauss"][x]["rms"], 3) for x in ("Fx", "Fz", "My")),
                 *(percent(nodes[x]["rms"], 3) if nodes else "–" for x in ("Fx", "Fz", "My")),
             )
         )
@@ -62,12 +62,16 @@ def of_motions(motions: dict[str, Any]) -> str:
             )
         )
         if motion["until"] > 900:
-            ours, theirs = motion["ours"], motion["theirs"]
+            ours, openfast = motion["ours"], motion["theirs"]
             energy.append(
                 (
                     f"`{name}`",
-                    f"{theirs['mean']:.3f} ({ours['mean'] - theirs['mean']:+.3f})",
-                    *(f"{theirs[key]:.3g} ({100 * (ours[key] / theirs[key] - 1):+.1f} %)" for key in theirs if key != "mean"),
+                    f"{openfast['mean']:.3f} ({ours['mean'] - openfast['mean']:+.3f})",
+                    *(
+                        f"{openfast[key]:.3g} ({100 * (ours[key] / openfast[key] - 1):+.1f} %)"
+                        for key in openfast
+                        if key != "mean"
+                    ),
                 )
             )
     head = (
@@ -135,7 +139,7 @@ def words(loads: dict[str, Any], motions: dict[str, Any], seas: dict[str, Any], 
     ratios = ", ".join(f"{100 * share:.0f} % at ka = {ka}" for ka, share in shares.items())
     met = {True: "met", False: "not met"}
     motions_met = met[all(result["whole"][d] <= 0.05 for result in motions.values() for d in DOFS)]
-    ours, theirs = motions["ss1_c3"]["ours"], motions["ss1_c3"]["theirs"]
+    ours, openfast = motions["ss1_c3"]["ours"], motions["ss1_c3"]["theirs"]
     stretched = largest("whole", "surge", ("free_comp_c3", "ss1_c3", "ss1_c4"))
     return (
         "OpenFAST v5.0.0 and this package have the same strips. The waves are five components (`comp`) or a JONSWAP sea: "
@@ -163,9 +167,9 @@ def words(loads: dict[str, Any], motions: dict[str, Any], seas: dict[str, Any], 
         + tables[1]
         + f"\nWithout stretching surge differs by up to {largest('whole', 'surge', smooth)}, slowly. This is OpenFAST's grid: "
         f"with it {largest('numerics', 'surge', smooth)} are left. With stretching surge differs by up to {stretched}, and its "
-        f"low-frequency energy in `ss1_c3` by {100 * (ours['surge l'] / theirs['surge l'] - 1):+.1f} %. Neither grid nor nodes "
-        "explain this. OpenFAST puts the load on the element at the waterline on the two nodes below, 2.5 m apart. The mean "
-        "and slow surge are small differences of large loads there. That was not shown to be the cause. Half the time "
+        f"low-frequency energy in `ss1_c3` by {100 * (ours['surge l'] / openfast['surge l'] - 1):+.1f} %. Neither grid "
+        "nor nodes explain this. OpenFAST puts the load on the element at the waterline on the two nodes below, 2.5 m apart. "
+        "The mean and slow surge are small differences of large loads there. That was not shown to be the cause. Half the time "
         f"step changes these differences by at most {100 * step:.1g} % of a deviation.\n\n"
         "**What OpenFAST leaves out.** Its elevation of second order misses "
         f"{100 * left_out:.0f} % (root mean square) of that of all pairs. The missing part is the difference waves above 0.75 "

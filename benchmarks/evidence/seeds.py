@@ -60,16 +60,16 @@ def conclude(results: list[dict[str, Any]], figures: Path) -> Section:
     rows, scores, inside_all = [], {}, np.ones(n, dtype=bool)
     for label in labels:
         true = TRUE[label]
-        found = [r["parameters"][label] for r in results]
-        value = np.array([f[0] for f in found])
-        sd = np.array([np.nan if f[1] is None else f[1] for f in found])
-        known = np.array([f[2] for f in found])
+        estimates = [r["parameters"][label] for r in results]
+        value = np.array([f[0] for f in estimates])
+        sd = np.array([np.nan if f[1] is None else f[1] for f in estimates])
+        identifiable = np.array([f[2] for f in estimates])
         z = (value - true) / sd
-        allowed = np.fmax(np.where(known, 2 * sd, 0.0), 0.02 * true)
+        allowed = np.fmax(np.where(identifiable, 2 * sd, 0.0), 0.02 * true)
         inside = np.abs(value - true) <= allowed
-        inside_all &= inside | ~known
+        inside_all &= inside | ~identifiable
         scores[label] = z
-        seen = z[known]
+        seen = z[identifiable]
         rms = float(np.sqrt(np.mean(seen**2))) if len(seen) else np.nan
         rows.append(
             (
@@ -77,13 +77,13 @@ def conclude(results: list[dict[str, Any]], figures: Path) -> Section:
                 number(true, 3),
                 percent(float(value.mean() / true - 1)),
                 percent(float(value.std(ddof=1) / true)) if n > 1 else "–",
-                percent(float(np.nanmean(sd) / true)) if known.any() else "–",
+                percent(float(np.nanmean(sd) / true)) if identifiable.any() else "–",
                 f"{rms:.2f}",
-                f"{int((inside & known).sum())} of {int(known.sum())}",
+                f"{int((inside & identifiable).sum())} of {int(identifiable.sum())}",
             )
         )
     share, need = int(inside_all.sum()), int(np.ceil(GOAL * n))
-    every = np.concatenate([z[np.isfinite(z)] for z in scores.values()])
+    all_z = np.concatenate([z[np.isfinite(z)] for z in scores.values()])
     least = min(int(row[-1].split()[0]) for row in rows)
     identified = sum(r["parameters"][label][2] for r in results for label in labels)
     objective = np.array([r["objective"] for r in results])
@@ -98,8 +98,8 @@ def conclude(results: list[dict[str, Any]], figures: Path) -> Section:
         + table(("Coefficient", "True", "Bias", "Scatter", "Stated sd", "rms z", "Inside"), rows)
         + "\nBias is the mean over the seeds minus the truth. Scatter is the standard deviation over the seeds. The stated "
         "standard deviation should match it (rms z near 1). Over all coefficients and seeds "
-        f"{np.mean(np.abs(every) < 2):.1%} of the z lie within ±2 (95.4 % of a normal distribution do), and rms z is "
-        f"{np.sqrt(np.mean(every**2)):.2f}.\n\n"
+        f"{np.mean(np.abs(all_z) < 2):.1%} of the z lie within ±2 (95.4 % of a normal distribution do), and rms z is "
+        f"{np.sqrt(np.mean(all_z**2)):.2f}.\n\n"
         f"- Coefficient by coefficient: the worst is inside in {least} of {n}; the goal is {need}. "
         f"{'Met.' if least >= need else 'Not met.'}\n"
         f"- All identifiable ones inside at once: {share} of {n} seeds; the goal is {need}. "

@@ -60,37 +60,37 @@ def key() -> str:
 
 def outcomes(count: int = 20, processes: int = 2) -> list[dict[str, Any]]:
     """What all starts led to, from the cache where it has been worked out."""
-    names, found = [f"{i + 1}-of-{count}" for i in range(count)], {}
-    for name, one in parallel("starts", key(), names, of_start, processes):
-        found[name] = one
-        say(f"  start {name}: J {one['objective']:.6f}, {one['iterations']} iterations, {one['seconds']:.0f} s")
-    return [found[name] for name in names if name in found]
+    names, by_start = [f"{i + 1}-of-{count}" for i in range(count)], {}
+    for name, result in parallel("starts", key(), names, of_start, processes):
+        by_start[name] = result
+        say(f"  start {name}: J {result['objective']:.6f}, {result['iterations']} iterations, {result['seconds']:.0f} s")
+    return [by_start[name] for name in names if name in by_start]
 
 
 def run(count: int, processes: int, figures: Path) -> Section:
     """Twenty random starts."""
-    found, wanted = outcomes(count, processes), count
-    count = len(found)
-    best = min(one["objective"] for one in found)
-    same = sum(one["objective"] < SAME * best for one in found)
+    results, wanted = outcomes(count, processes), count
+    count = len(results)
+    best = min(result["objective"] for result in results)
+    same = sum(result["objective"] < SAME * best for result in results)
     rows = []
-    for i, one in enumerate(found):
-        off = [f"{100 * (r - 1):+.0f} %" for r in one["ratio"]]
-        factor = max(max(one["values"][k] / TRUE[k], TRUE[k] / one["values"][k]) for k in TRUE)
+    for i, result in enumerate(results):
+        off = [f"{100 * (r - 1):+.0f} %" for r in result["ratio"]]
+        factor = max(max(result["values"][k] / TRUE[k], TRUE[k] / result["values"][k]) for k in TRUE)
         rows.append(
             (
                 i + 1,
                 f"{factor:.1f}",
                 *off,
-                f"{one['objective']:.6f}",
-                f"{100 * (one['objective'] / best - 1):.3f} %",
-                one["iterations"],
-                f"{one['seconds']:.0f}",
-                "yes" if one["converged"] else "no",
+                f"{result['objective']:.6f}",
+                f"{100 * (result['objective'] / best - 1):.3f} %",
+                result["iterations"],
+                f"{result['seconds']:.0f}",
+                "yes" if result["converged"] else "no",
             )
         )
-    iterations = [one["iterations"] for one in found]
-    worst = spread_of(found)
+    iterations = [result["iterations"] for result in results]
+    worst = spread_of(results)
     text = (
         f"{same} of {count} reach J within {100 * (SAME - 1):.0f} % of the best ({number(best)}): "
         f"{verdict(same, count, wanted)}. Iterations: median {np.median(iterations):.0f}, at most {max(iterations)}. "
@@ -114,12 +114,12 @@ def verdict(same: int, count: int, wanted: int) -> str:
     return "the goal, all of them, is met" if count == wanted else f"the goal is all of {wanted}: the others have not been run"
 
 
-def spread_of(found: list[dict[str, Any]]) -> str:
+def spread_of(results: list[dict[str, Any]]) -> str:
     """How far apart the coefficients are that different starts lead to, in their standard deviations."""
     apart = {}
     for label in TRUE:
-        values = np.array([one["reached"][label][0] for one in found])
-        sd = [one["reached"][label][1] for one in found if one["reached"][label][1] is not None]
+        values = np.array([result["reached"][label][0] for result in results])
+        sd = [result["reached"][label][1] for result in results if result["reached"][label][1] is not None]
         apart[label] = float(np.ptp(values) / np.median(sd)) if sd else float("nan")
     label = max(apart, key=lambda k: apart[k])
     return f"The coefficient that the starts leave furthest apart is `{label}`: {apart[label]:.2f} of its standard deviation."

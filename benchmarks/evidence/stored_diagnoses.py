@@ -41,21 +41,21 @@ def kept() -> dict[str, dict[str, Any]]:
 def merged(before: dict[str, dict[str, Any]], results: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
     """These beside what is kept of others. One of earlier sources keeps, as its `floor`, the error that was its seed's with
     nothing missing, where that is another now."""
-    every = before | {name: {k: v for k, v in one.items() if k not in UNKEPT} for name, one in results.items()}
+    all_results = before | {name: {k: v for k, v in result.items() if k not in UNKEPT} for name, result in results.items()}
     for name, old in before.items():
         nothing = Case("", 2, Case.of(name).seed).name
-        if nothing not in before or every[name]["sources"] != old["sources"]:
+        if nothing not in before or all_results[name]["sources"] != old["sources"]:
             continue
-        floors = [one["error"][1] for one in (before[nothing], every[nothing])]
-        if "floor" in old or (floors[0] != floors[1] and every[nothing]["sources"] != old["sources"]):
-            every[name] = every[name] | {"floor": old.get("floor", floors[0])}
-    return every
+        floors = [result["error"][1] for result in (before[nothing], all_results[nothing])]
+        if "floor" in old or (floors[0] != floors[1] and all_results[nothing]["sources"] != old["sources"]):
+            all_results[name] = all_results[name] | {"floor": old.get("floor", floors[0])}
+    return all_results
 
 
 def keep_all(results: dict[str, dict[str, Any]]) -> None:
     """These for later runs, beside what is kept of others, a line each."""
-    every = merged(kept(), results)
-    lines = [json.dumps({"name": case.name} | every[case.name]) for case in cases() if case.name in every]
+    all_results = merged(kept(), results)
+    lines = [json.dumps({"name": case.name} | all_results[case.name]) for case in cases() if case.name in all_results]
     beside = KEPT.with_suffix(".part")
     beside.write_text("".join(f"{line}\n" for line in lines))
     beside.replace(KEPT)
@@ -71,15 +71,20 @@ def doubts(result: dict[str, Any]) -> list[str | None]:
         return [HELD_OUT_ERROR] * len(result["effects"])
     if "in_doubt" in result:
         return list(result["in_doubt"])
-    tried: dict[int, dict[str, Any]] = {}
-    for words, one in result["tried"].items():
+    by_round: dict[int, dict[str, Any]] = {}
+    for words, stored_verdict in result["tried"].items():
         number, name = words.split(" ", 1)
-        tried.setdefault(int(number), {})[name] = restored(one)
+        by_round.setdefault(int(number), {})[name] = restored(stored_verdict)
     names = [listed(*pair) for pair in zip(result["effects"], result["motions"], strict=True)]
-    let_in = {name: one for some in tried.values() for name, one in some.items() if name in names and not one.refused}
-    worth = {name: one.bic + one.net for name, one in let_in.items()}
-    taken_out = {name: restored(one) for name, one in result.get("taken_out", {}).items()}
-    outdone = outdone_effects(worth, tried.get(max(tried, default=0), {}) | taken_out)
+    let_in = {
+        name: verdict
+        for verdicts in by_round.values()
+        for name, verdict in verdicts.items()
+        if name in names and not verdict.refused
+    }
+    worth = {name: verdict.bic + verdict.net for name, verdict in let_in.items()}
+    taken_out = {name: restored(stored_verdict) for name, stored_verdict in result.get("taken_out", {}).items()}
+    outdone = outdone_effects(worth, by_round.get(max(by_round, default=0), {}) | taken_out)
     return [outdone.get(name) for name in names]
 
 
@@ -93,9 +98,9 @@ def answer_of(result: Mapping[str, Any]) -> Answer:
     before, after = result["error"]
     count = len(result["effects"])  # earlier searches had no probabilities
     claims = zip(result["effects"], result["motions"], result["alike"], result.get("probability", [None] * count), strict=True)
-    found = bool(result["effects"]) and not in_doubt(result)
+    answered = bool(result["effects"]) and not in_doubt(result)
     return Answer(
-        verdict="found" if found else "nothing_missing" if result["verdict"] == "nothing_missing" else "unexplained",
+        verdict="found" if answered else "nothing_missing" if result["verdict"] == "nothing_missing" else "unexplained",
         effects=[
             ClaimedEffect(effect=name, motion=motion, indistinguishable_from=alike, probability=probability)
             for name, motion, alike, probability in claims

@@ -20,7 +20,7 @@ def mean_of(results: list[dict[str, Any]], key: str) -> np.ndarray:
     return np.mean([result[key] for result in results], axis=0)
 
 
-def elevation(found: Found, seas: dict[str, tuple[float, float]], cutoff: float, path: Path) -> Path:
+def elevation(results_by_sea: Found, seas: dict[str, tuple[float, float]], cutoff: float, path: Path) -> Path:
     """Spectra of the elevation at the origin, of first order and with second, mean over the seeds."""
     from matplotlib.figure import Figure
 
@@ -29,7 +29,7 @@ def elevation(found: Found, seas: dict[str, tuple[float, float]], cutoff: float,
     with style():
         figure = Figure(figsize=(2 * WIDTH, 2.6), layout="constrained")
         lines = {}
-        for ax, (sea, results) in zip(figure.subplots(1, 2), found.items(), strict=True):
+        for ax, (sea, results) in zip(figure.subplots(1, 2), results_by_sea.items(), strict=True):
             frequency = np.array(results[0]["elevation frequency"])
             for case, words, colour, width in (("2", "second order", MEASURED, 1.0), ("1", "first order", BEFORE, 1.6)):
                 mean = mean_of(results, f"elevation {case}")
@@ -44,7 +44,7 @@ def elevation(found: Found, seas: dict[str, tuple[float, float]], cutoff: float,
     return path
 
 
-def densities(found: Found, seas: dict[str, tuple[float, float]], path: Path) -> Path:
+def densities(results_by_sea: Found, seas: dict[str, tuple[float, float]], path: Path) -> Path:
     """Spectra of the motions by case, mean over the seeds, the bands shaded."""
     from matplotlib.figure import Figure
 
@@ -54,7 +54,7 @@ def densities(found: Found, seas: dict[str, tuple[float, float]], path: Path) ->
     with style():
         figure = Figure(figsize=(2 * WIDTH, 5.6), layout="constrained")
         axes, lines = figure.subplots(3, 2, sharex=True), {}
-        for column, (sea, results) in enumerate(found.items()):
+        for column, (sea, results) in enumerate(results_by_sea.items()):
             frequency = np.array(results[0]["frequency"])
             shown = (frequency > 0.002) & (frequency < 0.2)
             for ax, dof in zip(axes[:, column], UNIT, strict=True):
@@ -78,7 +78,7 @@ def densities(found: Found, seas: dict[str, tuple[float, float]], path: Path) ->
     return path
 
 
-def bars(found: Found, seas: dict[str, tuple[float, float]], path: Path) -> Path:
+def bars(results_by_sea: Found, seas: dict[str, tuple[float, float]], path: Path) -> Path:
     """Band integrals by case: mean over the seeds, their range as a line."""
     from matplotlib.figure import Figure
 
@@ -88,13 +88,13 @@ def bars(found: Found, seas: dict[str, tuple[float, float]], path: Path) -> Path
     with style():
         figure = Figure(figsize=(2 * WIDTH, 3.9), layout="constrained")
         axes, artists = figure.subplots(2, 6), {}
-        for row, (sea, results) in enumerate(found.items()):
+        for row, (sea, results) in enumerate(results_by_sea.items()):
             for i, (dof, band) in enumerate(columns):
                 ax = axes[row, i]
-                for place, (case, name) in enumerate(NAMES.items()):
+                for position, (case, name) in enumerate(NAMES.items()):
                     values = np.array([result["integrals"][case][i] for result in results])
-                    artists[name] = ax.bar(place, values.mean(), color=COLOURS[case], width=0.75)
-                    ax.plot([place, place], [values.min(), values.max()], color="#f0b429", lw=1.4, zorder=3)
+                    artists[name] = ax.bar(position, values.mean(), color=COLOURS[case], width=0.75)
+                    ax.plot([position, position], [values.min(), values.max()], color="#f0b429", lw=1.4, zorder=3)
                 ax.set_xticks(range(4), list(NAMES))
                 ax.grid(visible=False, axis="x")
                 ax.tick_params(axis="y", labelsize=7)

@@ -53,14 +53,14 @@ def words(results: dict[str, dict[str, Any]], cut: dict[str, Any]) -> str:
     """The tables and what explains what."""
     base, rows = results["base"], []
     for name, result in results.items():
-        both = base | result
+        with_base = base | result
 
-        def over(a: str, b: str, column: int, both: Any = both, result: Any = result) -> str:
-            return f"{both[a][column] / both[b][column]:.3g}" if a in result or b in result else "–"
+        def over(a: str, b: str, column: int, with_base: Any = with_base, result: Any = result) -> str:
+            return f"{with_base[a][column] / with_base[b][column]:.3g}" if a in result or b in result else "–"
 
         first = [over("2", "1", i) if "2" in result else "–" for i in (0, 2, 4)]
         later = [over("3", "2", i) if "3" in result else "–" for i in (0, 1, 4)]
-        drift = f"{both['3'][-1] - both['2'][-1]:.2f}" if "3" in result else "–"
+        drift = f"{with_base['3'][-1] - with_base['2'][-1]:.2f}" if "3" in result else "–"
         rows.append((NAMES[name], *first, *later, drift))
     head = (
         "Changed",
@@ -99,8 +99,8 @@ def reasons(results: dict[str, dict[str, Any]]) -> str:
 
     def of(variant: str, cases: str, column: int) -> str:
         a, b = cases.split("/")
-        both = results["base"] | results.get(variant, {})
-        return f"{both[a][column] / both[b][column]:.2g}" if variant in results else "–"
+        with_base = results["base"] | results.get(variant, {})
+        return f"{with_base[a][column] / with_base[b][column]:.2g}" if variant in results else "–"
 
     def mean(variant: str) -> str:
         return f"{results[variant]['3'][-1]:.2f} m"

@@ -65,10 +65,10 @@ def shortcomings(results: dict[str, list[dict[str, Any]]]) -> tuple[str, ...]:
     if not outside:
         return ()
     count = sum(len(ratios_off) for ratios_off in outside.values())
-    each = ". ".join(f"Of {pair}: {', '.join(ratios_off)}" for pair, ratios_off in outside.items())
+    listed_ratios = ". ".join(f"Of {pair}: {', '.join(ratios_off)}" for pair, ratios_off in outside.items())
     return (
         f"of the {len(PAIRS) * len(COLUMNS)} ratios between the paper's cases {count} are more than {100 * NEAR:.0f} % off "
-        f"and reached by none of {SEEDS} seeds. They are listed with the paper's in brackets. {each}",
+        f"and reached by none of {SEEDS} seeds. They are listed with the paper's in brackets. {listed_ratios}",
     )
 
 

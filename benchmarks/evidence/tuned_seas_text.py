@@ -64,8 +64,8 @@ def words_of_starts(results: dict[str, dict[str, Any]]) -> str:
         [f"`{label}`", *(x for result in results.values() for x in _value(result["parameters"].get(label)))] for label in labels
     ]
     values = table(["Coefficient", *(x for name in results for x in (STARTS[name], "tuned"))], rows)
-    rest = {STARTS[name]: ", ".join(errors) or "nothing" for name, errors in unmended(results).items()}
-    beyond = "\n".join(f"- begun from {start}: {errors}" for start, errors in rest.items())
+    unmended_by_start = {STARTS[name]: ", ".join(errors) or "nothing" for name, errors in unmended(results).items()}
+    beyond = "\n".join(f"- begun from {start}: {errors}" for start, errors in unmended_by_start.items())
     sentences = "\n".join(
         f"- From {STARTS[name]}: {sentence}." for name, result in results.items() for sentence in result["said"][:6]
     )
@@ -109,12 +109,12 @@ def words_of_laws(results: dict[str, dict[str, Any]]) -> str:
     law = results["significant_height"]
     tests = list(plain["bands"])
     held = [id for id in tests if plain["bands"][id]["use"] == "holdout"]
-    each = {"constants": plain} | {label: results[name] for name, label in LAWS.items() if name in results}
+    fits = {"constants": plain} | {label: results[name] for name, label in LAWS.items() if name in results}
     rows = [
         [f"{channel}, {band.split('_')[0]}", name, *(f"{100 * result['bands'][id][channel][band][1]:+.0f} %" for id in tests)]
         for channel in ("surge", "heave", "pitch")
         for band in ("low_frequency", "wave_frequency")
-        for name, result in each.items()
+        for name, result in fits.items()
     ]
     heads = ["Coefficients", *(f"{id}{' (held out)' if id in held else ''}" for id in tests)]
     errors = [
@@ -123,7 +123,7 @@ def words_of_laws(results: dict[str, dict[str, Any]]) -> str:
             str(len(result["parameters"]) - len(plain["parameters"])),
             *(number(_rms(result, group), 3) for group in ([id for id in tests if id not in held], held)),
         ]
-        for name, result in each.items()
+        for name, result in fits.items()
     ]
     exponents = {k: v for k, v in law["parameters"].items() if k.endswith(".Hs_exponent")}
     alone = [results[f"{sea}{ALONE}"]["parameters"] for sea in SEAS if f"{sea}{ALONE}" in results]

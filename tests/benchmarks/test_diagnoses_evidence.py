@@ -65,9 +65,9 @@ def test_outcomes_are_counted_by_what_is_in_the_tank():
         listed=Share(4, 6),
         right=Share(4, 6),
         near=Share(2, 6),
-        told=Share(3, 6),
+        near_or_exact=Share(3, 6),
         alarms=Share(2, 3),
-        both=Share(1, 2),
+        both_named=Share(1, 2),
         in_sets=Share(1, 2),
         unexplained=Share(1, 2),
         lower=Share(1, 2),
@@ -105,7 +105,7 @@ def test_errors_are_over_those_with_nothing_missing_of_their_time():
         "umbilical-2-2": said(["umbilical"], 0.3, sources="then"),
     }
     after = merged(merged(before, {"nothing-1": said([], 0.1)}), {"current-2-1": said(["current"], 0.15)})
-    assert {name for name, one in after.items() if "floor" in one} == {"umbilical-2-1"} and merged(after, after) == after
-    results = {Case.of(name): one for name, one in after.items()}
-    ratio = error_ratios({case: answer_of(one) for case, one in results.items()}, floors_of(results))
+    assert {name for name, result in after.items() if "floor" in result} == {"umbilical-2-1"} and merged(after, after) == after
+    results = {Case.of(name): result for name, result in after.items()}
+    ratio = error_ratios({case: answer_of(result) for case, result in results.items()}, floors_of(results))
     assert [round(ratio[Case.of(name)], 12) for name in ("current-2-1", "umbilical-2-1", "umbilical-2-2")] == [1.5, 1.5, 1.0]
