@@ -69,17 +69,17 @@ def series(channel: str, floor: float, noise: float = 0.01, spread: float = 1.0,
     return MotionSeries("t", "decay", use, channel, noise, spread, 2 * CUT.lines, CUT.low, CUT.high, 4000, np.full(14, floor))
 
 
-def study_of(*found: MotionSeries) -> Study:
+def study_of(*all_series: MotionSeries) -> Study:
     """Of decays in surge."""
     records = (SimpleNamespace(id="t", degree_of_freedom="surge"),)
-    cuts = (FourierRows.of([CUT] * len(found), 4000),)
-    return Study(None, None, (), np.zeros((0, 0)), 8, None, (), found, records, np.zeros((0, 0)), cuts, None)  # type: ignore[arg-type]
+    cuts = (FourierRows.of([CUT] * len(all_series), 4000),)
+    return Study(None, None, (), np.zeros((0, 0)), 8, None, (), all_series, records, np.zeros((0, 0)), cuts, None)  # type: ignore[arg-type]
 
 
 def left(squares, error) -> ResidualSummary:
     """All in the first region; squares by degree of freedom."""
-    one = 2 * CUT.lines.sum() * np.array(squares, float)[:, None] * [1, 0, 0]
-    return ResidualSummary(one, np.array(error)[:, None] * [1, 0, 0], one.sum(axis=1))
+    squares_by_region = 2 * CUT.lines.sum() * np.array(squares, float)[:, None] * [1, 0, 0]
+    return ResidualSummary(squares_by_region, np.array(error)[:, None] * [1, 0, 0], squares_by_region.sum(axis=1))
 
 
 def test_a_quiet_sensor_does_not_make_a_motion_count_more():
@@ -119,12 +119,12 @@ def test_what_barely_moves_in_a_sea_weighs_nothing():
     sea = SimpleNamespace(measured=rows[None], times=TIME, dofs=(0, 1, 4), slow=0.03)
     noise = {"surge": 0.01, "sway": 0.01, "pitch": 1e-4}
     record = Record("sea", "irregular", "fit", None, TIME, {}, None, None, noise, True, 0.0, SimpleNamespace(), "sea.csv")
-    found, cut = gather_sea(sea, [record], 0.5)  # type: ignore[arg-type]
-    assert [one.channel for one in found] == ["surge", "sway", "pitch"]
-    assert [bool(one.dof.any()) for one in found] == [True, False, True]
-    study = Study(None, None, (), np.zeros((0, 0)), 8, None, (), tuple(found), (), np.zeros((0, 0)), (cut,), None)  # type: ignore[arg-type]
+    all_series, cut = gather_sea(sea, [record], 0.5)  # type: ignore[arg-type]
+    assert [series.channel for series in all_series] == ["surge", "sway", "pitch"]
+    assert [bool(series.dof.any()) for series in all_series] == [True, False, True]
+    study = Study(None, None, (), np.zeros((0, 0)), 8, None, (), tuple(all_series), (), np.zeros((0, 0)), (cut,), None)  # type: ignore[arg-type]
     errors = [cut(np.stack([0 * TIME, size * np.sin(0.3 * TIME), 0 * TIME])) for size in (0.0, 3.0)]
-    assert len({float(minus_two_log_likelihood(study, one).sum()) for one in errors}) == 1
+    assert len({float(minus_two_log_likelihood(study, error).sum()) for error in errors}) == 1
     assert list(study.main) == [True, False, True]
 
 
@@ -141,11 +141,11 @@ def test_what_something_refused_outdoes_is_in_doubt():
     def verdict(bic: float, refused: Refusal | None) -> Verdict:
         return Verdict(bic, 0.9, True, -100.0, 30.0, 5.0, refused)
 
-    tried = {"drag": verdict(335.0, LITTLE), "memory": verdict(20.0, LITTLE)}
-    assert outdone_effects({"lag": 158.0, "umbilical": 1300.0}, tried) == {"lag": "drag"}
-    assert outdone_effects({"lag": 158.0, "current": 60.0}, tried | {"current": verdict(40.0, None)}) == {}
-    assert outdone_effects({"lag": 400.0}, tried) == {} == outdone_effects({"lag": 400.0}, {})
-    assert outdone_effects({"mass": np.nan}, tried) == {}  # told though no error shows it
+    verdicts = {"drag": verdict(335.0, LITTLE), "memory": verdict(20.0, LITTLE)}
+    assert outdone_effects({"lag": 158.0, "umbilical": 1300.0}, verdicts) == {"lag": "drag"}
+    assert outdone_effects({"lag": 158.0, "current": 60.0}, verdicts | {"current": verdict(40.0, None)}) == {}
+    assert outdone_effects({"lag": 400.0}, verdicts) == {} == outdone_effects({"lag": 400.0}, {})
+    assert outdone_effects({"mass": np.nan}, verdicts) == {}  # told though no error shows it
 
 
 def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
@@ -153,8 +153,8 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
     memory = Candidate("radiation_memory", "pitch", ())
     good, small = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, None), Verdict(8.0, 0.2, True, -6.0, 4.0, 2.0, LITTLE)
 
-    def score(number: int, one: Candidate, verdict: Verdict | None) -> Score:
-        return Score(number, one.effect, one.dof, 1.0, 1, 1.0, None, None, verdict)
+    def score(number: int, candidate: Candidate, verdict: Verdict | None) -> Score:
+        return Score(number, candidate.effect, candidate.dof, 1.0, 1, 1.0, None, None, verdict)
 
     scores = [score(1, drag, good), score(2, friction, good), score(3, memory, small)]
     rejected = {memory.name: Rejected("radiation_memory", "pitch", LITTLE)}
@@ -172,14 +172,14 @@ def test_what_is_in_doubt_for_what_was_not_fitted():
     """Everything where the held-out error is larger with it, or what acts in the motion that has it."""
     good = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, None)
     drift, friction = Candidate("wave_drift", "pitch", ()), Candidate("coulomb_friction", "surge", ())
-    accepted: Any = {one.name: SimpleNamespace(verdict=good) for one in (drift, friction)}
+    accepted: Any = {candidate.name: SimpleNamespace(verdict=good) for candidate in (drift, friction)}
     fits: Any = SimpleNamespace(study=SimpleNamespace(order_hint=""))
     search = Search(fits, SearchRecord(accepted=accepted))
     state: Any = SimpleNamespace(chosen=(drift, friction))
     assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {}  # type: ignore[arg-type]
     worse, better = errors(surge=0.38, pitch=0.1), errors(surge=0.1, pitch=0.13)
-    both = {drift.name: HELD_OUT_ERROR, friction.name: HELD_OUT_ERROR}
-    assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), worse) == both  # type: ignore[arg-type]
+    doubts = {drift.name: HELD_OUT_ERROR, friction.name: HELD_OUT_ERROR}
+    assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), worse) == doubts  # type: ignore[arg-type]
     of_motion = doubted_effects(search, state, errors(surge=0.3, pitch=0.1), better)  # type: ignore[arg-type]
     assert of_motion == {drift.name: HELD_OUT_ERROR}
     fits.study.order_hint = "records have no second order"
@@ -194,17 +194,17 @@ def test_a_decay_that_begins_in_motion_is_told_where_that_matters():
     )
     own = np.zeros((2, 3, 2))
     own[:, 0, 1], own[:, 1, 1], own[:, 1, 0] = 1.0, [0.5, 0.05], 9.0  # positions, rates over them; surge drifts
-    place = SimpleNamespace(own=own.reshape(2, -1))
+    point = SimpleNamespace(own=own.reshape(2, -1))
     swings, rubs = Candidate("hidden_oscillator", "pitch", ()), Candidate("coulomb_friction", "pitch", ())
 
     def told(*chosen: Candidate) -> list[str]:
         return moving_release_notes(
-            SimpleNamespace(study=study), SimpleNamespace(chosen=chosen, linearisation=SimpleNamespace(point=place))
+            SimpleNamespace(study=study), SimpleNamespace(chosen=chosen, linearisation=SimpleNamespace(point=point))
         )  # type: ignore[arg-type]
 
     assert told(rubs) == []
-    (said,) = told(rubs, swings)
-    assert said.startswith("late begins in motion. A hidden oscillator in pitch has a memory")
+    (note,) = told(rubs, swings)
+    assert note.startswith("late begins in motion. A hidden oscillator in pitch has a memory")
 
 
 def test_no_step_is_taken_to_where_a_test_diverges_that_is_not_fitted(monkeypatch):
@@ -221,21 +221,21 @@ def test_no_step_is_taken_to_where_a_test_diverges_that_is_not_fitted(monkeypatc
     )
     study = replace(study, directions=np.eye(1), decay_records=(), own_width=np.zeros((0, 0)))
     linearisation = Linearisation(moving, (0,), residual(0.0), -rows(np.stack([sine, 0 * sine]))[:, None], np.zeros((0, 0)))  # type: ignore[arg-type]
-    monkeypatch.setattr(Study, "residual", lambda self, place: residual(float(place.x[0])))
+    monkeypatch.setattr(Study, "residual", lambda self, point: residual(float(point.x[0])))
     monkeypatch.setattr(Study, "logarithmic", np.array([False]))
     monkeypatch.setattr(Study, "limits", np.array([[-np.inf, np.inf]]))
     monkeypatch.setattr(Study, "steps", lambda self, x: np.asarray(x))
     monkeypatch.setattr(Study, "spans", ())
-    found = fit(study, linearisation, np.array([True, False]), Prior(np.zeros(1), np.full(1, 30.0)), iterations=1)
-    assert np.isfinite(found.linearisation.residual).all() and found.linearisation.point is moving
+    fitted = fit(study, linearisation, np.array([True, False]), Prior(np.zeros(1), np.full(1, 30.0)), iterations=1)
+    assert np.isfinite(fitted.linearisation.residual).all() and fitted.linearisation.point is moving
 
 
 def test_what_is_left_is_a_root_mean_square():
     """Of a residual that is a sine of 0.2 m: 0.2 / sqrt(2), less what the floor hides."""
     study = study_of(series("surge", 1e-4))
     (rows,) = study.cuts
-    found = ResidualSummary.of(study, rows(0.2 * np.sin(2 * np.pi * 0.2 * TIME)[None]))
-    assert_allclose(found.error, 0.2 / np.sqrt(2), rtol=1e-4)
+    summary = ResidualSummary.of(study, rows(0.2 * np.sin(2 * np.pi * 0.2 * TIME)[None]))
+    assert_allclose(summary.error, 0.2 / np.sqrt(2), rtol=1e-4)
     assert ResidualSummary.of(study, rows(0.5e-4 * np.ones((1, 4000)) / np.sqrt(4000))).squares.max() == 0.0
 
 
@@ -244,8 +244,8 @@ def test_gain_is_of_what_is_asked():
     study = study_of(series("surge", 0.01), series("surge", 0.01, use="fit"))
     before, after = left([400, 400], [0.2, 0.2]), left([100, 400], [0.1, 0.2])
     grounds = HeldOutComparison(study, np.array([True, False]), before, after, True)
-    gain, told = grounds.error_reduction()
-    assert told
+    gain, measured = grounds.error_reduction()
+    assert measured
     assert gain == pytest.approx(0.75, abs=1e-3)
     assert grounds.likelihood_gain == pytest.approx(300 * 2 * CUT.lines.sum())
     assert HeldOutComparison(study, np.array([False, True]), before, after, True).error_reduction()[0] == pytest.approx(0.0)
@@ -254,8 +254,8 @@ def test_gain_is_of_what_is_asked():
     assert HeldOutComparison(study, np.array([True, True]), nothing, nothing, False).error_reduction() == (0.0, False)
 
 
-@pytest.mark.parametrize(("refused", "said"), [(None, WORSE), (Refusal(RefusalKind.NEGLIGIBLE), WORSE), (LITTLE, LITTLE)])
-def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against_it(refused, said, monkeypatch):
+@pytest.mark.parametrize(("refused", "reason"), [(None, WORSE), (Refusal(RefusalKind.NEGLIGIBLE), WORSE), (LITTLE, LITTLE)])
+def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against_it(refused, reason, monkeypatch):
     for name, value in {"reason_to_reject": refused, "worsened_motion": WORSE, "significance": 9.0}.items():
         monkeypatch.setattr(acceptance, name, lambda *_, value=value: value)
     study = SimpleNamespace(used=np.array([True]))
@@ -263,7 +263,7 @@ def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against
     grounds = SimpleNamespace(
         error_reduction=lambda: (0.5, True), likelihood_gain=20.0, relevance=lambda: 0.5, unseen=True, study=study
     )
-    assert assess_effect(study, state, state, Candidate("a", None, ("a",)), None, 100.0, grounds).refused == said
+    assert assess_effect(study, state, state, Candidate("a", None, ("a",)), None, 100.0, grounds).refused == reason
 
 
 def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
@@ -273,13 +273,13 @@ def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
     study = study_of(series("surge", 0.01, spread=2.0), of_sea, series("surge", 0.01, use="fit"))
 
     def refused(dof: str | None, *after: float) -> str:
-        found = worsened_motion(study, dof, left([1, 1, 1], [0.8, 0.1, 0.1]), left([1, 1, 1], after))
-        return describe_refusal(found) if found else ""
+        refusal = worsened_motion(study, dof, left([1, 1, 1], [0.8, 0.1, 0.1]), left([1, 1, 1], after))
+        return describe_refusal(refusal) if refusal else ""
 
     assert refused("surge", 0.5, 0.9, 0.1) == "" == refused("surge", 0.82, 0.1, 0.1) == refused("pitch", 2.0, 2.0, 2.0)
-    said = "surge is followed worse with it (J of it in {}: {} without it, {} with it)"
-    assert refused("surge", 0.6, 0.1, 0.22) == said.format("all tests", "0.500", "0.520")
-    assert refused("surge", 0.84, 0.1, 0.01) == said.format("the held-out tests", "0.400", "0.420")
+    message = "surge is followed worse with it (J of it in {}: {} without it, {} with it)"
+    assert refused("surge", 0.6, 0.1, 0.22) == message.format("all tests", "0.500", "0.520")
+    assert refused("surge", 0.84, 0.1, 0.01) == message.format("the held-out tests", "0.400", "0.420")
     assert refused("surge", 0.6, 0.1, 0.21) == "" and refused("heave", 0.1, 0.12, 0.1)
     assert refused(None, 0.2, 0.3, 0.1) == "" != refused(None, 0.6, 0.32, 0.1)
     assert refused(None, 0.9, 0.1, 0.01).startswith("what moves is followed worse with it (J in the held-out tests: 0.500")
@@ -288,16 +288,16 @@ def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
 def test_what_is_followed_worse_is_counted_in_what_matters():
     """By a share of the motion or the floor, the larger; a motion that its test is not about is left out."""
     study = study_of(series("surge", 0.01, spread=2.0), series("surge", 0.1, noise=0.1), series("surge", 0.01))
-    found = worsening(study, left([1, 1, 1], [0.2, 0.2, 0.2]), left([1, 1, 1], [0.26, 0.3, 0.1]))
-    assert_allclose(found, [0.06 / (MIN_MOTION_SHARE * 2.0), 1.0, -0.1 / MIN_MOTION_SHARE])
+    worse_by = worsening(study, left([1, 1, 1], [0.2, 0.2, 0.2]), left([1, 1, 1], [0.26, 0.3, 0.1]))
+    assert_allclose(worse_by, [0.06 / (MIN_MOTION_SHARE * 2.0), 1.0, -0.1 / MIN_MOTION_SHARE])
     quiet = SimpleNamespace(series=study.series, main=np.array([False, True, True]))
     assert worsening(quiet, left([1, 1, 1], [0, 0, 0]), left([1, 1, 1], [9, 0, 0]))[0] == 0
 
 
 def test_what_is_followed_worse_at_the_end_is_told():
     study = study_of(series("surge", 0.01), series("surge", 0.01), series("surge", 0.01))
-    (said,) = worsened_motions(study, left([1, 1, 1], [0.2, 0.2, 0.2]), left([1, 1, 1], [0.1, 0.3, 0.201]))
-    assert said.startswith("surge of ") and "30 % of the motion is left, 20 % before" in said
+    (note,) = worsened_motions(study, left([1, 1, 1], [0.2, 0.2, 0.2]), left([1, 1, 1], [0.1, 0.3, 0.201]))
+    assert note.startswith("surge of ") and "30 % of the motion is left, 20 % before" in note
 
 
 @pytest.mark.parametrize(("worse", "refused"), [(0.5, "drift"), (0.1, None)])
@@ -309,15 +309,15 @@ def test_an_effect_that_makes_a_test_worse_than_declared_is_refused(worse, refus
     def state(*error: float) -> SimpleNamespace:
         return SimpleNamespace(summary=left([1, 1], error))
 
-    found = {
+    accepted = {
         name: AcceptedEffect(1.0, before, None, verdict, (), 1.0, np.zeros(2))
         for name, before in {"memory": state(0.9, worse), "drift": state(0.9, 0.1)}.items()
     }
     fits: Any = SimpleNamespace(study=study)
     joint: Any = None
-    record = SearchRecord(accepted=found)
+    record = SearchRecord(accepted=accepted)
     Verification(Search(fits, record), joint).refuse_worsening(state(0.9, 0.1), state(0.1, worse))
-    assert [name for name, one in record.accepted.items() if one.verdict.refused] == ([refused] if refused else [])
+    assert [name for name, effect in record.accepted.items() if effect.verdict.refused] == ([refused] if refused else [])
     if refused:
         reason = describe_refusal(record.accepted["drift"].verdict.refused)
         left_over = "50.0 % of the motion is left with it, 10.0 % in the baseline"
@@ -325,7 +325,7 @@ def test_an_effect_that_makes_a_test_worse_than_declared_is_refused(worse, refus
 
 
 @pytest.mark.parametrize(
-    ("refused", "passes", "kept"),
+    ("refused", "passes", "remaining"),
     [
         ([set()], ["abc"], "abc"),
         ([{"a"}, set()], ["abc", "bc"], "bc"),
@@ -335,9 +335,9 @@ def test_an_effect_that_makes_a_test_worse_than_declared_is_refused(worse, refus
         ([{"a", "b", "c"}, {"b", "c"}, {"c"}], ["abc", "bc", "c"], ""),
     ],
 )
-def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, kept):
+def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, remaining):
     """After an effect has gone only those that were refused beside it are tried; then all, from a fit to convergence."""
-    tried: list[str] = []
+    passes_run: list[str] = []
 
     class Effect(NamedTuple):
         name: str
@@ -351,16 +351,16 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
     def state(names: str) -> Any:
         return State(tuple(Effect(name) for name in names))
 
-    def verdict(one: Effect, refused: bool) -> Verdict:
+    def verdict(effect: Effect, refused: bool) -> Verdict:
         reason = Refusal(RefusalKind.IMPROBABLE, (0.1,)) if refused else None
-        return Verdict(float(ord(one.name)), 0.5, True, 50.0, 9.0, 9.0, reason)
+        return Verdict(float(ord(effect.name)), 0.5, True, 50.0, 9.0, 9.0, reason)
 
     class Scripted(Verification):
         def without_unsupported(self, baseline, reached):
             return reached
 
         def refuse_worsening(self, baseline, reached):
-            assert {one.after.chosen for one in self.record.accepted.values()} == {reached.chosen}
+            assert {effect.after.chosen for effect in self.record.accepted.values()} == {reached.chosen}
 
         def refit_all(self, reached):
             return reached
@@ -368,24 +368,26 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
         def reject_others(self, reached):
             pass
 
-        def evidence(self, baseline, reached, some):
-            tried.append("".join(one.name for one in some))
-            now = refused[len(tried) - 1]
-            found = {}
-            for one in some:
-                without = State(tuple(other for other in reached.chosen if other != one))
-                found[one.name] = AcceptedEffect(1.0, without, reached, verdict(one, one.name in now), (), 1.0, np.zeros(2))
-            return found
+        def evidence(self, baseline, reached, effects):
+            passes_run.append("".join(effect.name for effect in effects))
+            now = refused[len(passes_run) - 1]
+            accepted = {}
+            for effect in effects:
+                without = State(tuple(other_effect for other_effect in reached.chosen if other_effect != effect))
+                accepted[effect.name] = AcceptedEffect(
+                    1.0, without, reached, verdict(effect, effect.name in now), (), 1.0, np.zeros(2)
+                )
+            return accepted
 
     nothing: Any = None
     record = SearchRecord()
-    found = Scripted(Search(nothing, record), nothing).run(state(""), state("abc"))
-    assert "".join(sorted(one.name for one in found.chosen)) == kept
-    assert tried == passes and set(record.rejected) == set("abc") - set(kept)
+    reached = Scripted(Search(nothing, record), nothing).run(state(""), state("abc"))
+    assert "".join(sorted(effect.name for effect in reached.chosen)) == remaining
+    assert passes_run == passes and set(record.rejected) == set("abc") - set(remaining)
 
 
 @pytest.mark.parametrize(
-    ("selected", "kept", "required"),
+    ("selected", "remaining", "required"),
     [
         (["a", "ab", "ab"], "ab", ["", "", ""]),  # the set stays
         (["ab", "ac", "ab"], "ab", ["", "", ""]),  # two sets in turn: what two of three have
@@ -395,7 +397,7 @@ def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, ke
         (["a", ""], "a", ["", ""]),  # nothing at all: verification decides
     ],
 )
-def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(monkeypatch, selected, kept, required):
+def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(monkeypatch, selected, remaining, required):
     class Effect(NamedTuple):
         name: str
 
@@ -407,7 +409,7 @@ def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(monkey
     class State:
         chosen: tuple[Effect, ...]
 
-    names, rounds, asked = "abcdefgl", iter(selected), []
+    names, rounds, required_sets = "abcdefgl", iter(selected), []
 
     def subset(chosen: str) -> Any:
         return SimpleNamespace(variants=tuple(names.index(name) for name in chosen), evidence=float(len(chosen)))
@@ -416,39 +418,39 @@ def test_where_sets_alternate_the_effects_that_most_of_them_have_are_kept(monkey
         def __init__(self) -> None:
             self.fits: Any = SimpleNamespace(refit_from=lambda state, *_: state)
             self.columns = SimpleNamespace(variants=[Effect(name) for name in names])
-            fitted = {one.variants: one for one in map(subset, [*selected, *names])}
-            self.selector = SimpleNamespace(fitted=fitted, subset=lambda some: subset("".join(names[i] for i in some)))
+            fitted = {fitted_subset.variants: fitted_subset for fitted_subset in map(subset, [*selected, *names])}
+            self.selector = SimpleNamespace(fitted=fitted, subset=lambda variants: subset("".join(names[i] for i in variants)))
 
         def with_split_modes(self, baseline):
             return None
 
         def select(self, state, number, required):
-            asked.append("".join(sorted(required)))
+            required_sets.append("".join(sorted(required)))
             return subset(next(rounds))
 
-        def as_predicted(self, state, one):
+        def as_predicted(self, state, subset_fit):
             return False
 
-    def fit_subset(fits, state, columns, one, *_):
-        return State(tuple(Effect(names[i]) for i in one.variants))
+    def fit_subset(fits, state, columns, subset_fit, *_):
+        return State(tuple(Effect(names[i]) for i in subset_fit.variants))
 
     monkeypatch.setattr(joint_search, "fit_subset", fit_subset)
     states: Any = [State(())]
-    found = Scripted().run(states, states.append)
-    assert "".join(one.name for one in found.chosen) == kept and next(rounds, None) is None
-    assert asked == required
+    state = Scripted().run(states, states.append)
+    assert "".join(effect.name for effect in state.chosen) == remaining and next(rounds, None) is None
+    assert required_sets == required
 
 
 def test_gain_in_waves_is_where_an_effect_acts():
     """Slow motion of one test halves, waves are as before: a gain of three quarters, of what is slow; none where another test
     becomes worse by as much."""
-    one = replace(series("surge", 0.01), kind="irregular", slow=0.3)
-    study = study_of(one, one)
+    sea_series = replace(series("surge", 0.01), kind="irregular", slow=0.3)
+    study = study_of(sea_series, sea_series)
     dof = study.by_region(study.pooled)
     assert (dof[0, 1:] > 4).all()
     before = 400 * dof
-    for other, expected in ((0.25, 0.75), (4.0, 0.0)):
-        after = before * [[1, 0.25, 1], [1, other, 1]]
+    for factor, expected in ((0.25, 0.75), (4.0, 0.0)):
+        after = before * [[1, 0.25, 1], [1, factor, 1]]
         two = (ResidualSummary(squares, np.sqrt(squares), squares.sum(axis=1)) for squares in (before, after))
         assert HeldOutComparison(study, np.array([True, True]), *two, True).error_reduction()[0] == pytest.approx(
             expected, abs=2e-3
@@ -466,7 +468,7 @@ def test_what_matters_of_a_decay(channel, least):
 
 
 @pytest.mark.parametrize(
-    ("numbers", "where", "said"),
+    ("numbers", "where", "reason_words"),
     [
         ({"bic": 9, "net": 60}, ComparedData.HELD_OUT, ""),
         (
@@ -489,10 +491,10 @@ def test_what_matters_of_a_decay(channel, least):
         ({"bic": 43, "matters": 0.9}, ComparedData.HELD_OUT, "no error falls by"),
     ],
 )
-def test_what_an_effect_has_to_reach(numbers, where, said):
+def test_what_an_effect_has_to_reach(numbers, where, reason_words):
     """Little in the fitted tests is enough where tests that were not fitted agree; much is not where they do not."""
     reason = reason_to_reject(**{"held": 0.7, "net": 100.0, "clear": 6.0, "matters": 2.0, **numbers}, where=where)
-    assert said in describe_refusal(reason) if reason and said else reason is None and not said
+    assert reason_words in describe_refusal(reason) if reason and reason_words else reason is None and not reason_words
 
 
 def test_blocks_are_consecutive_and_whole():
@@ -500,20 +502,20 @@ def test_blocks_are_consecutive_and_whole():
     whole = Record("d", "decay", "fit", "surge", TIME, {"surge": np.sin(TIME)}, None, None, {}, True, 0.0, None, "d.csv")
     cut = split_record(whole)
     assert len(cut) == BLOCKS_PER_TEST
-    assert len({one.id for one in cut}) == BLOCKS_PER_TEST
-    assert_allclose(np.concatenate([one.time for one in cut]), TIME)
-    assert_allclose(np.concatenate([one.values["surge"] for one in cut]), np.sin(TIME))
+    assert len({block.id for block in cut}) == BLOCKS_PER_TEST
+    assert_allclose(np.concatenate([block.time for block in cut]), TIME)
+    assert_allclose(np.concatenate([block.values["surge"] for block in cut]), np.sin(TIME))
 
 
 def test_a_parameter_that_is_very_clear_counts_beside_one_that_is_not(monkeypatch) -> None:
     """Variances of any ratio: the clear one is not taken for rounding of the other."""
-    one = SimpleNamespace(amplitudes=("a", "b"))
+    candidate = SimpleNamespace(amplitudes=("a", "b"))
     for variances in ((1.0, 1.0), (1.0, 1e-12), (1.0, 1e-20), (1e-20, 1.0)):
         covariance, steps = np.diag(variances), 5 * np.sqrt(variances)
         study = SimpleNamespace(index=lambda names: [0, 1], steps=lambda x, steps=steps: steps)
         monkeypatch.setattr(acceptance, "predict_gain", lambda *_, c=covariance: SimpleNamespace(covariance=c))
         state = SimpleNamespace(linearisation=SimpleNamespace(active=(0, 1), point=SimpleNamespace(x=None)))
-        assert acceptance.significance(study, one, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
+        assert acceptance.significance(study, candidate, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
 
 
 def test_there_is_one_pseudo_inverse() -> None:

@@ -79,22 +79,22 @@ def written(tmp_path_factory):
 
 def reasons(path, campaign):
     """States that are gone on from, and what is told."""
-    told = []
-    return load_checkpoint(path, fresh(campaign), told.append), told
+    messages = []
+    return load_checkpoint(path, fresh(campaign), messages.append), messages
 
 
-def same(one, other):
+def same(first, second):
     """Whether two values of plain data are the same to the last bit."""
-    if dataclasses.is_dataclass(one):
-        names = [field.name for field in dataclasses.fields(one)]
-        return type(one) is type(other) and all(same(getattr(one, name), getattr(other, name)) for name in names)
-    if isinstance(one, np.ndarray):
-        return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
-    if isinstance(one, dict):
-        return one.keys() == other.keys() and all(same(one[name], other[name]) for name in one)
-    if isinstance(one, tuple):
-        return type(one) is type(other) and len(one) == len(other) and all(map(same, one, other))
-    return type(one) is type(other) and (one == other or (one != one and other != other))
+    if dataclasses.is_dataclass(first):
+        names = [field.name for field in dataclasses.fields(first)]
+        return type(first) is type(second) and all(same(getattr(first, name), getattr(second, name)) for name in names)
+    if isinstance(first, np.ndarray):
+        return first.dtype == second.dtype and first.shape == second.shape and first.tobytes() == second.tobytes()
+    if isinstance(first, dict):
+        return first.keys() == second.keys() and all(same(first[name], second[name]) for name in first)
+    if isinstance(first, tuple):
+        return type(first) is type(second) and len(first) == len(second) and all(map(same, first, second))
+    return type(first) is type(second) and (first == second or (first != first and second != second))
 
 
 def plain(value):
@@ -104,17 +104,17 @@ def plain(value):
     if dataclasses.is_dataclass(value):
         return {field.name: plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
     if isinstance(value, dict):
-        return {name: plain(one) for name, one in value.items()}
+        return {name: plain(item) for name, item in value.items()}
     return tuple(map(plain, value)) if isinstance(value, tuple | list) else value
 
 
 def test_what_was_reached_is_read_back_to_the_last_bit(written):
-    again, told = fresh(written.campaign), []
-    (state,) = load_checkpoint(written.path, again, told.append)
-    assert not told and same(plain(state), plain(written.state))
-    assert again.record.earlier == 12.0 and same(again.fits.begun, written.search.fits.begun)
+    fresh_search, messages = fresh(written.campaign), []
+    (state,) = load_checkpoint(written.path, fresh_search, messages.append)
+    assert not messages and same(plain(state), plain(written.state))
+    assert fresh_search.record.earlier == 12.0 and same(fresh_search.fits.begun, written.search.fits.begun)
     for name in ("accepted", "scores", "rejected", "notes", "shortlist"):
-        assert same(plain(getattr(again.record, name)), plain(getattr(written.search.record, name))), name
+        assert same(plain(getattr(fresh_search.record, name)), plain(getattr(written.search.record, name))), name
 
 
 def test_nothing_is_told_where_nothing_was_kept(written, tmp_path):
@@ -147,8 +147,8 @@ def pickled_about(path, victim):
 
 def pickled_inside(path, victim):
     """Everything as it should be, but for one array."""
-    with np.load(path, allow_pickle=False) as known:
-        arrays = {name: known[name] for name in known.files}
+    with np.load(path, allow_pickle=False) as stored:
+        arrays = {name: stored[name] for name in stored.files}
     with path.open("wb") as file:
         np.savez(file, allow_pickle=True, **arrays | {"0": np.array([Malicious(victim)], dtype=object)})
 
@@ -158,15 +158,15 @@ def test_a_folder_from_somebody_else_executes_nothing(written, tmp_path, attack)
     path, victim = tmp_path / "kept", tmp_path / "victim"
     path.write_bytes(written.path.read_bytes())
     attack(path, victim)
-    found, told = reasons(path, written.campaign)
-    assert not victim.exists() and found == []
-    assert len(told) == 1 and "cannot be read" in told[0] and "\n" not in told[0]
+    states, messages = reasons(path, written.campaign)
+    assert not victim.exists() and states == []
+    assert len(messages) == 1 and "cannot be read" in messages[0] and "\n" not in messages[0]
 
 
 def changed(path, **how):
     """The file with something else in its document or its arrays."""
-    with np.load(path, allow_pickle=False) as known:
-        arrays = {name: known[name] for name in known.files}
+    with np.load(path, allow_pickle=False) as stored:
+        arrays = {name: stored[name] for name in stored.files}
     about = json.loads(arrays.pop("about").tobytes())
     about["reached"] |= how.pop("reached", {})
     about |= how.pop("about", {})
@@ -181,7 +181,9 @@ DAMAGE = {
     "cut off": lambda path: path.write_bytes(path.read_bytes()[:1000]),
     "nothing": lambda path: path.write_bytes(b""),
     "text": lambda path: path.write_text("not this"),
-    "a byte": lambda path: path.write_bytes((known := path.read_bytes())[:2000] + bytes([known[2000] ^ 1]) + known[2001:]),
+    "a byte": lambda path: path.write_bytes(
+        (original := path.read_bytes())[:2000] + bytes([original[2000] ^ 1]) + original[2001:]
+    ),
     "another zip": lambda path: zipfile.ZipFile(path, "w").writestr("a", "b"),
     "no document": lambda path: np.savez(path.open("wb"), a=np.zeros(3)),
     "an array less": lambda path: changed(path, without=["0"]),
@@ -200,15 +202,15 @@ def test_a_damaged_file_is_left_alone(written, tmp_path, how):
     path = tmp_path / "kept"
     path.write_bytes(written.path.read_bytes())
     DAMAGE[how](path)
-    found, told = reasons(path, written.campaign)
-    assert found == [] and len(told) == 1 and "cannot be read" in told[0] and "starts anew" in told[0]
+    states, messages = reasons(path, written.campaign)
+    assert states == [] and len(messages) == 1 and "cannot be read" in messages[0] and "starts anew" in messages[0]
 
 
 def test_an_effect_that_there_is_none_of_is_left_alone(written, tmp_path):
     path = tmp_path / "kept"
     path.write_bytes(written.path.read_bytes())
-    with np.load(path, allow_pickle=False) as known:
-        (state,) = json.loads(known["about"].tobytes())["reached"]["states"]
+    with np.load(path, allow_pickle=False) as stored:
+        (state,) = json.loads(stored["about"].tobytes())["reached"]["states"]
     changed(path, reached={"states": [state | {"chosen": ["nothing (surge)"]}]})
     assert reasons(path, written.campaign)[0] == []
 
@@ -216,22 +218,22 @@ def test_an_effect_that_there_is_none_of_is_left_alone(written, tmp_path):
 def test_another_program_starts_anew(written, monkeypatch):
     """Any source file of either package, any version, Python, and the precision."""
     monkeypatch.setattr(fingerprints, "sources", lambda: "of a load that was changed")
-    found, told = reasons(written.path, written.campaign)
-    assert found == [] and "an earlier run was of other source code; the diagnosis starts anew" in told[0]
+    states, messages = reasons(written.path, written.campaign)
+    assert states == [] and "an earlier run was of other source code; the diagnosis starts anew" in messages[0]
 
 
 @pytest.mark.parametrize("name", ["jax", "numpy", "scipy", "optimistix", "diffrax", "equinox"])
 def test_another_version_starts_anew(written, monkeypatch, name):
-    known = fingerprints.version
-    monkeypatch.setattr(fingerprints, "version", lambda one: "99.0" if one == name else known(one))
-    found, told = reasons(written.path, written.campaign)
-    assert found == [] and f"of other {name} ({known(name)}, now 99.0)" in told[0]
+    version_of = fingerprints.version
+    monkeypatch.setattr(fingerprints, "version", lambda package: "99.0" if package == name else version_of(package))
+    states, messages = reasons(written.path, written.campaign)
+    assert states == [] and f"of other {name} ({version_of(name)}, now 99.0)" in messages[0]
 
 
 def copied(written, tmp_path, name="", change=lambda text: text):
-    for one in ("campaign.yaml", "platform.yaml", *(f"roll-{i}.csv" for i in range(3))):
-        text = (written.folder / one).read_text()
-        (tmp_path / one).write_text(change(text) if one == name else text)
+    for file in ("campaign.yaml", "platform.yaml", *(f"roll-{i}.csv" for i in range(3))):
+        text = (written.folder / file).read_text()
+        (tmp_path / file).write_text(change(text) if file == name else text)
     return load_campaign(tmp_path)
 
 
@@ -249,8 +251,10 @@ CHANGES = {
 def test_other_inputs_start_anew(written, tmp_path, how):
     """The same files in another place go on."""
     campaign = copied(written, tmp_path, *CHANGES[how])
-    found, told = reasons(written.path, campaign)
-    assert (len(found) == 1, told) == (True, []) if how == "nothing" else (found == [] and "of other inputs" in told[0])
+    states, messages = reasons(written.path, campaign)
+    assert (
+        (len(states) == 1, messages) == (True, []) if how == "nothing" else (states == [] and "of other inputs" in messages[0])
+    )
 
 
 def test_other_options_and_another_model_start_anew(written):
@@ -277,19 +281,19 @@ class Sine(AbstractLoad):
 
 def test_the_fingerprint_knows_loads_of_ones_own(tmp_path, monkeypatch):
     """Their numbers and fields, and their source: it is in none of the packages."""
-    one = Sine(0.0)
-    known = fingerprints.fingerprint(one)
-    assert fingerprints.fingerprint(Sine(0.0)) == known
-    assert fingerprints.fingerprint(Sine(1.0)) != known
-    assert fingerprints.fingerprint(Sine(0.0, 11.0)) != known
+    sine = Sine(0.0)
+    reference = fingerprints.fingerprint(sine)
+    assert fingerprints.fingerprint(Sine(0.0)) == reference
+    assert fingerprints.fingerprint(Sine(1.0)) != reference
+    assert fingerprints.fingerprint(Sine(0.0, 11.0)) != reference
     monkeypatch.syspath_prepend(tmp_path)
     text = "import equinox as eqx\nclass Own(eqx.Module):\n    def force(self, x):\n        return 2 * x\n"
-    found = []
+    prints = []
     for number, source in enumerate((text, text.replace("2 * x", "3 * x"), text)):
         (tmp_path / f"own_load_{number}.py").write_text(source)
         module = __import__(f"own_load_{number}")
-        found.append(_of(module.Own(), tmp_path))
-    assert found[0] != found[1] and found[0] == found[2]
+        prints.append(_of(module.Own(), tmp_path))
+    assert prints[0] != prints[1] and prints[0] == prints[2]
 
 
 def _of(value, folder):
@@ -301,7 +305,7 @@ def _of(value, folder):
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
+    ("first", "second"),
     [
         (1, 1.0),
         (1, True),
@@ -320,16 +324,16 @@ def _of(value, folder):
         (jnp.zeros(2), jnp.ones(2)),
     ],
 )
-def test_what_differs_has_another_fingerprint(one, other):
-    assert fingerprints.fingerprint(one) != fingerprints.fingerprint(other)
-    assert fingerprints.fingerprint(one) == fingerprints.fingerprint(one)
+def test_what_differs_has_another_fingerprint(first, second):
+    assert fingerprints.fingerprint(first) != fingerprints.fingerprint(second)
+    assert fingerprints.fingerprint(first) == fingerprints.fingerprint(first)
 
 
 def test_the_fingerprint_is_of_files_not_of_where_they_are(tmp_path):
     for name, text in (("a", "1"), ("b", "1"), ("c", "2")):
         (tmp_path / name).write_text(text)
-    one, same, other, none = (fingerprints.fingerprint(tmp_path / name) for name in "abcd")
-    assert one == same and len({one, other, none}) == 3
+    first, same, different, none = (fingerprints.fingerprint(tmp_path / name) for name in "abcd")
+    assert first == same and len({first, different, none}) == 3
 
 
 def test_sources_are_all_files_of_both_packages(tmp_path, monkeypatch):
@@ -363,24 +367,24 @@ def told_in(campaign, path, stop_at="", **how):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            found = diagnose(campaign.model, campaign, progress=progress, checkpoint=path, **how)
+            diagnosis = diagnose(campaign.model, campaign, progress=progress, checkpoint=path, **how)
         except Killed:
-            found = None
-    return found, seen, [str(one.message) for one in caught if issubclass(one.category, CheckpointWarning)]
+            diagnosis = None
+    return diagnosis, seen, [str(warning.message) for warning in caught if issubclass(warning.category, CheckpointWarning)]
 
 
 @pytest.mark.slow
 def test_a_diagnosis_that_was_killed_ends_as_one_run_does(tmp_path):
     """All files that it writes are the same, the time that it took aside."""
     campaign = campaign_of(tmp_path, lambda x, v: -500.0 * x**3)
-    whole, _, told = told_in(campaign, None)
+    whole, _, messages = told_in(campaign, None)
     path = tmp_path / "kept"
-    assert not told and told_in(campaign, path, "round 2")[0] is None
-    found, seen, told = told_in(campaign, path)
-    assert not told and not any(stage.startswith(("fitting the baseline", "round 1")) for stage in seen)
+    assert not messages and told_in(campaign, path, "round 2")[0] is None
+    resumed, seen, messages = told_in(campaign, path)
+    assert not messages and not any(stage.startswith(("fitting the baseline", "round 1")) for stage in seen)
     written = []
-    for name, one in (("whole", whole), ("resumed", found)):
-        write_diagnosis(dataclasses.replace(one, seconds=0.0), tmp_path / name, figures=False)
+    for name, diagnosis in (("whole", whole), ("resumed", resumed)):
+        write_diagnosis(dataclasses.replace(diagnosis, seconds=0.0), tmp_path / name, figures=False)
         written.append({path.name: path.read_bytes() for path in sorted((tmp_path / name).iterdir())})
     assert written[0].keys() == written[1].keys()
     for name in written[0]:
@@ -393,9 +397,9 @@ def test_a_diagnosis_says_in_one_line_that_it_starts_anew(tmp_path, monkeypatch)
     campaign, path = campaign_of(tmp_path, lambda x, v: 0.0), tmp_path / "kept"
     assert told_in(campaign, path, "round 1")[0] is None and path.exists()
     monkeypatch.setattr(fingerprints, "sources", lambda: "of a load that was changed")
-    _, seen, told = told_in(campaign, path, "round 1")
+    _, seen, messages = told_in(campaign, path, "round 1")
     assert any(stage.startswith("fitting the baseline") for stage in seen)
-    assert len(told) == 1 and "other source code; the diagnosis starts anew" in told[0] and "\n" not in told[0]
+    assert len(messages) == 1 and "other source code; the diagnosis starts anew" in messages[0] and "\n" not in messages[0]
     assert told_in(campaign, path, "round 1")[2] == []  # which was kept anew
 
 

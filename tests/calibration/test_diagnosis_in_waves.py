@@ -140,16 +140,19 @@ def campaign_of(folder: Path, force, tones=MappingProxyType({})) -> Campaign:
 def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
     """Named first, all of it, within what its deviation and rounding allow; the sea that was held out is followed."""
     campaign = campaign_of(tmp_path, excited)
-    found = diagnose(campaign.model, campaign)
-    assert found.verdict == "found"
-    first = found.effects[0]
+    diagnosis = diagnose(campaign.model, campaign)
+    assert diagnosis.verdict == "found"
+    first = diagnosis.effects[0]
     share = first.parameters["computed_excitation.share"]
     assert first.effect == "computed_excitation" and not first.indistinguishable
     assert share.value == pytest.approx(1.0, abs=0.01 + 2 * share.standard_deviation) and share.standard_deviation < 0.02
     assert first.evidence.holdout_gain > 0.95
-    before, after = ([one for one in some if one.use == "holdout"] for some in (found.anatomy_before, found.anatomy_after))
+    before, after = (
+        [series for series in anatomy if series.use == "holdout"]
+        for anatomy in (diagnosis.anatomy_before, diagnosis.anatomy_after)
+    )
     assert after[0].relative < 0.05 < 0.2 < before[0].relative
-    write_diagnosis(found, tmp_path / "out", figures=False)
+    write_diagnosis(diagnosis, tmp_path / "out", figures=False)
     used = apply_calibration(tmp_path / "out" / "diagnosis.json", campaign.model, campaign.platform.name)
     assert_allclose(used.model.values["computed_excitation.share"], share.value)
 
@@ -158,8 +161,8 @@ def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
 def test_a_table_that_says_otherwise_is_left_alone(tmp_path: Path) -> None:
     """Where strips have the force that acts, nothing is missing, whatever the table says."""
     campaign = campaign_of(tmp_path, pressure)
-    found = diagnose(campaign.model, campaign)
-    assert found.verdict == "nothing_missing" and not found.effects
+    diagnosis = diagnose(campaign.model, campaign)
+    assert diagnosis.verdict == "nothing_missing" and not diagnosis.effects
 
 
 @pytest.mark.slow
@@ -167,13 +170,13 @@ def test_waves_that_come_back_are_found(tmp_path: Path) -> None:
     """When and how much, of waves whose record has incident ones only."""
     share, delay = 0.08, 47.3
     campaign = campaign_of(tmp_path, lambda omega: pressure(omega) * (1 + share * np.exp(-1j * omega * delay)))
-    found = diagnose(campaign.model, campaign)
-    assert [one.effect for one in found.effects] == ["wave_reflection"]
-    said = {label.split(".")[1]: one for label, one in found.effects[0].parameters.items()}
-    assert said["seen"].value == 0
+    diagnosis = diagnose(campaign.model, campaign)
+    assert [effect.effect for effect in diagnosis.effects] == ["wave_reflection"]
+    by_name = {label.split(".")[1]: parameter for label, parameter in diagnosis.effects[0].parameters.items()}
+    assert by_name["seen"].value == 0
     for name, true in {"coefficient": share, "delay": delay}.items():
-        assert said[name].value == pytest.approx(true, abs=0.003 + 3 * said[name].standard_deviation)
-    assert said["coefficient"].standard_deviation < 0.01 and said["delay"].standard_deviation < 0.2
+        assert by_name[name].value == pytest.approx(true, abs=0.003 + 3 * by_name[name].standard_deviation)
+    assert by_name["coefficient"].standard_deviation < 0.01 and by_name["delay"].standard_deviation < 0.2
 
 
 @pytest.mark.slow
@@ -186,18 +189,18 @@ def test_waves_that_come_back_are_found(tmp_path: Path) -> None:
 )
 def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float, near: float) -> None:
     """By one look where it is neutral: within a step of what is looked at; nothing where slopes tell of it."""
-    found = []
+    starts = []
     for shift in (far, near):
         (folder := tmp_path / f"{shift}").mkdir()
         campaign = campaign_of(folder, lambda omega, shift=shift: pressure(omega) * np.exp(1j * turns(omega) * shift))
         setup = set_up_study(campaign, options_of(campaign))
-        (one,) = (one for one in setup.candidates if label in one.amplitudes)
+        (candidate,) = (candidate for candidate in setup.candidates if label in candidate.amplitudes)
         linearisation = setup.study.linearise(
             Point(np.asarray(setup.study.space.start), np.zeros((0, 0))), setup.study.index([label])
         )
-        found.append(phase_shift_start(setup.study, linearisation, label, one.phase_per_unit))
-    there, nothing = found
-    assert there.values[label] == pytest.approx(far, abs=PHASE_SPACING / abs(turns(0.65))) and there.gain > 500
+        starts.append(phase_shift_start(setup.study, linearisation, label, candidate.phase_per_unit))
+    shifted, nothing = starts
+    assert shifted.values[label] == pytest.approx(far, abs=PHASE_SPACING / abs(turns(0.65))) and shifted.gain > 500
     assert nothing is None
 
 
@@ -208,9 +211,9 @@ def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
     manifest = json.loads((tmp_path / "campaign.yaml").read_text()) | {"plausible": {"wave_gauge": "40 m"}}
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
     campaign = load_campaign(tmp_path)
-    found = diagnose(campaign.model, campaign)
-    assert [one.effect for one in found.effects] == ["wave_gauge_position"]
-    assert found.effects[0].parameters["wave_gauge_position.distance"].value == pytest.approx(-25.0, abs=0.3)
+    diagnosis = diagnose(campaign.model, campaign)
+    assert [effect.effect for effect in diagnosis.effects] == ["wave_gauge_position"]
+    assert diagnosis.effects[0].parameters["wave_gauge_position.distance"].value == pytest.approx(-25.0, abs=0.3)
 
 
 @pytest.mark.validate
@@ -255,26 +258,26 @@ def test_seas_are_as_the_campaign_states(tmp_path: Path) -> None:
     campaign = load_campaign(tmp_path)
     search = Search.of(campaign, set_up_study(campaign, options_of(campaign)), lambda *_: None)
     state = fit_baseline(search)
-    found = conclude(campaign, search, state, state, (), 1.0)
-    write_diagnosis(found, tmp_path / "found", figures=False)
+    diagnosis = conclude(campaign, search, state, state, (), 1.0)
+    write_diagnosis(diagnosis, tmp_path / "found", figures=False)
     assert simulate_campaign(tmp_path, tmp_path / "seas", calibration=tmp_path / "found")
     errors = json.loads((tmp_path / "seas" / "comparison.json").read_text())["error"]
-    for test in found.augmented.tests:
-        for one in test.series:
-            assert errors[test.id][one.channel]["relative"] == pytest.approx(one.relative, rel=0.02)
-            assert one.relative < 0.01  # noise of 1 mm in waves and motions leaves 0.2 % of surge
+    for test in diagnosis.augmented.tests:
+        for series in test.series:
+            assert errors[test.id][series.channel]["relative"] == pytest.approx(series.relative, rel=0.02)
+            assert series.relative < 0.01  # noise of 1 mm in waves and motions leaves 0.2 % of surge
 
 
 @pytest.mark.slow
 def test_a_wrong_sign_is_found(tmp_path: Path) -> None:
     """Of the motion, or of the waves, which one motion cannot tell; turned round, nothing is missing."""
     campaign = campaign_of(tmp_path, lambda omega: -pressure(omega))
-    found = diagnose(campaign.model, campaign)
-    (effect,) = found.effects
-    assert (found.verdict, effect.effect, effect.degree_of_freedom) == ("found", "sensor_sign", "heave")
+    diagnosis = diagnose(campaign.model, campaign)
+    (effect,) = diagnosis.effects
+    assert (diagnosis.verdict, effect.effect, effect.degree_of_freedom) == ("found", "sensor_sign", "heave")
     assert effect.indistinguishable == ("sensor_sign (wave)",) and effect.evidence.holdout_gain > 0.99
-    assert "sign: -1" in found.notes[0] and all(one.relative < 0.1 for one in found.anatomy_after)
-    write_diagnosis(found, tmp_path / "out")
+    assert "sign: -1" in diagnosis.notes[0] and all(series.relative < 0.1 for series in diagnosis.anatomy_after)
+    write_diagnosis(diagnosis, tmp_path / "out")
     page = write_report(tmp_path / "out").read_text()
     assert "a wrong sign in heave" in page and "cannot tell it from a wrong sign in wave" in page
 
@@ -286,17 +289,17 @@ def test_a_campaign_turned_round(tmp_path: Path) -> None:
     manifest = json.loads((tmp_path / "campaign.yaml").read_text())
     manifest["tests"][1]["channels"] = {"heave": {"sign": -1}}
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
-    one = load_campaign(tmp_path)
-    made, again = (
-        with_signs_reversed(one, ["wave", "heave"]),
-        with_signs_reversed(with_signs_reversed(one, ["wave", "heave"]), ["wave", "heave"]),
+    original = load_campaign(tmp_path)
+    made, twice = (
+        with_signs_reversed(original, ["wave", "heave"]),
+        with_signs_reversed(with_signs_reversed(original, ["wave", "heave"]), ["wave", "heave"]),
     )
     for was, now, right in zip(campaign.records, made.records, (-1, 1), strict=True):
         assert_allclose(now.values["heave"], right * was.values["heave"])
         assert_allclose(now.wave, -was.wave)
     for was, now in zip(runs(campaign), runs(made), strict=True):
         assert_allclose(now.wave, -was.wave)
-    assert again.manifest == one.manifest
+    assert twice.manifest == original.manifest
 
 
 @pytest.mark.validate
@@ -304,10 +307,10 @@ def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
     """What goes with neither motion nor waves: no name, no law, though the motion follows it; and the force as it acted,
     through the sea that was made ready."""
     campaign = campaign_of(tmp_path, pressure, TONES)
-    found = diagnose(campaign.model, campaign)
-    assert found.verdict == "unexplained" and not found.effects
-    assert re.fullmatch(r"[^(]+ \(of what was tried, [^(]+ came nearest\)", found.next_test)
-    (force,) = found.latent
+    diagnosis = diagnose(campaign.model, campaign)
+    assert diagnosis.verdict == "unexplained" and not diagnosis.effects
+    assert re.fullmatch(r"[^(]+ \(of what was tried, [^(]+ came nearest\)", diagnosis.next_test)
+    (force,) = diagnosis.latent
     acted = sum(size * np.cos(rate * force.shown.time) for rate, size in TONES.items())
     assert force.motion == "heave" and not force.law.terms
     assert np.corrcoef(force.shown.force, acted)[0, 1] > 0.998
@@ -328,13 +331,13 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     study = setup.study
     (record,) = study.seas
     assert record.fitted < 0.45 * record.steps
-    place = Point(np.asarray(study.space.start), np.zeros((0, 0)))
-    every, some, fitted = study.residual(place, "all"), study.residual(place), study.used[study.row_series]
-    assert_allclose(some[fitted], every[fitted], rtol=0, atol=1e-12)
-    assert np.abs(every[~fitted]).max() > 1e-3 and not some[~fitted].any()
+    point = Point(np.asarray(study.space.start), np.zeros((0, 0)))
+    whole_run, fitted_part, fitted = study.residual(point, "all"), study.residual(point), study.used[study.row_series]
+    assert_allclose(fitted_part[fitted], whole_run[fitted], rtol=0, atol=1e-12)
+    assert np.abs(whole_run[~fitted]).max() > 1e-3 and not fitted_part[~fitted].any()
     # slopes by segments on several cores are those of the whole simulation
     count, basis = record.fitted, jnp.asarray(study.directions[::7].T)
-    weights, x = jnp.linspace(-1.0, 1.0, basis.shape[1]), jnp.asarray(place.x)
+    weights, x = jnp.linspace(-1.0, 1.0, basis.shape[1]), jnp.asarray(point.x)
     with ThreadPoolExecutor(2) as pool:
         residual, slopes = sea_slopes(record, Frame(x, basis), count, basis.shape[1], pool)
 
@@ -345,21 +348,21 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     assert_allclose(residual, exact, rtol=0, atol=1e-12)
     assert_allclose(slopes @ weights, along, rtol=0, atol=1e-9 * np.abs(slopes).max())
     active = range(len(study.names) - 3)
-    linearisations = [dataclasses.replace(study, width=width).linearise(place, active) for width in (16, study.width)]
-    assert_allclose(linearisations[0].residual, some, rtol=0, atol=1e-12)
+    linearisations = [dataclasses.replace(study, width=width).linearise(point, active) for width in (16, study.width)]
+    assert_allclose(linearisations[0].residual, fitted_part, rtol=0, atol=1e-12)
     assert not linearisations[0].slopes[~fitted].any() and np.abs(linearisations[0].slopes[fitted]).max() > 1e-3
     assert_allclose(
         linearisations[0].slopes, linearisations[1].slopes, rtol=0, atol=1e-9 * np.abs(linearisations[1].slopes).max()
     )
     # a neutral candidate at another value of its shape changes no slope of the acceleration by the state
-    memory = next(one for one in setup.candidates if one.name == "radiation_memory (heave)")
-    along, known = study.index(memory.amplitudes), {}
-    study.linearise_all([(place, along)], keep=known)
+    memory = next(candidate for candidate in setup.candidates if candidate.name == "radiation_memory (heave)")
+    along, neutral = study.index(memory.amplitudes), {}
+    study.linearise_all([(point, along)], keep=neutral)
     for values in memory.grid[1:3]:
-        x = np.array(place.x)
+        x = np.array(point.x)
         for label, value in values.items():
             x[study.labels.index(label)] = study.space.free[study.labels.index(label)].transform.inverse(value)
-        jobs = [(Point(x, place.own), along)]
-        quick, whole = study.linearise_neutral(jobs, known, along)[0], study.linearise_all(jobs)[0]
+        jobs = [(Point(x, point.own), along)]
+        quick, whole = study.linearise_neutral(jobs, neutral, along)[0], study.linearise_all(jobs)[0]
         assert_allclose(quick.slopes, whole.slopes, rtol=0, atol=1e-12 * np.abs(whole.slopes).max())
-        assert_allclose(quick.residual, some, rtol=0, atol=1e-12)
+        assert_allclose(quick.residual, fitted_part, rtol=0, atol=1e-12)

@@ -63,8 +63,8 @@ def release(amplitude: float, torque, seed: int, swinging=None) -> tuple[np.ndar
         turn = -822.0 * np.sin(roll) - 2.4 * speed + torque(roll, speed) + inertia * pull
         return [speed, turn / (115.7 + 23.0), moved - speed, -pull]
 
-    found = solve_ivp(rate, (0, 60), [amplitude, 0.0, 0.0, 0.0], t_eval=time, rtol=1e-9, atol=1e-11)
-    return time, found.y[0] + np.random.default_rng(seed).normal(0, NOISE, time.size)
+    solution = solve_ivp(rate, (0, 60), [amplitude, 0.0, 0.0, 0.0], t_eval=time, rtol=1e-9, atol=1e-11)
+    return time, solution.y[0] + np.random.default_rng(seed).normal(0, NOISE, time.size)
 
 
 def campaign_of(folder, torque, swinging=None):
@@ -104,11 +104,11 @@ def test_rows_hold_the_sum_of_squares():
     values = rng.normal(size=(2, 401, 3))  # an odd number has no line at half the sampling rate
     cut = cut_into_bands(40.1, 0.1, 401, 12, 6.0)  # all frequencies
     rows = FourierRows.of([cut, cut], 401)
-    found = rows(values)
-    for i, one in enumerate(values):
-        mine = found[rows.series == i]
-        assert_allclose(mine.T @ mine, one.T @ one, rtol=1e-10, atol=1e-10)
-    assert_allclose(rows(values[..., 0]), found[:, 0])
+    all_rows = rows(values)
+    for i, samples in enumerate(values):
+        series_rows = all_rows[rows.series == i]
+        assert_allclose(series_rows.T @ series_rows, samples.T @ samples, rtol=1e-10, atol=1e-10)
+    assert_allclose(rows(values[..., 0]), all_rows[:, 0])
 
 
 def test_a_series_without_rows_keeps_its_place():
@@ -124,7 +124,7 @@ def test_a_series_without_rows_keeps_its_place():
 def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
     """What is declared is fitted, not looked for."""
     campaign = campaign_of(tmp_path, lambda x, v: 0.0)
-    names = {one.name for one in set_up_study(campaign, Options()).candidates}
+    names = {candidate.name for candidate in set_up_study(campaign, Options()).candidates}
     assert {"coulomb_friction (roll)", "nonlinear_hydrostatics (roll)", "quadratic_damping (roll)"} <= names
     assert not any("surge" in name for name in names)
 
@@ -133,12 +133,12 @@ def test_a_term_that_is_declared_zero_is_a_candidate(tmp_path):
     """And one that is declared and fitted is none: a unit of its direction is a unit of its logarithm."""
     campaign = campaign_of(tmp_path, lambda x, v: 0.0)
     setup = set_up_study(campaign, Options())
-    assert "linear_damping (roll)" not in {one.name for one in setup.candidates}
+    assert "linear_damping (roll)" not in {candidate.name for candidate in setup.candidates}
     assert (np.abs(setup.study.directions[setup.study.index(setup.base)]).max(axis=1) == 1.0).all()
     for change in ({"linear_damping": {"B44": 0.0}}, {"linear_damping": {}}):
         with (tmp_path / "platform.yaml").open("w") as file:
             YAML().dump(PLATFORM | change, file)
-        names = {one.name for one in set_up_study(load_campaign(tmp_path), Options()).candidates}
+        names = {candidate.name for candidate in set_up_study(load_campaign(tmp_path), Options()).candidates}
         assert {"linear_damping (roll)", "stiffness (roll)"} <= names
 
 
@@ -148,7 +148,7 @@ def found_in(campaign, **how):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("torque", "expected", "left"),  # `left`: share of the held-out decay's error
+    ("torque", "expected", "error_ratio"),  # `error_ratio`: share of the held-out decay's error
     [
         (lambda x, v: 0.0, None, 1.0),
         (lambda x, v: -500.0 * x**3, "nonlinear_hydrostatics", 0.05),
@@ -156,23 +156,23 @@ def found_in(campaign, **how):
     ],
     ids=["nothing", "hydrostatics", "friction"],
 )
-def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
+def test_what_a_rolling_body_lacks(tmp_path, torque, expected, error_ratio):
     """The effect is named, the held-out decay comes down, and its band holds it; where there is none, none is named."""
-    found = found_in(campaign_of(tmp_path, torque))
-    predicted = [one for one in found.predictions if one.test == "roll-2"]
-    assert len(predicted) == len(found.predictions) == 1
+    diagnosis = found_in(campaign_of(tmp_path, torque))
+    predicted = [prediction for prediction in diagnosis.predictions if prediction.test == "roll-2"]
+    assert len(predicted) == len(diagnosis.predictions) == 1
     assert predicted[0].model_error >= NOISE
     if expected is None:
-        assert found.verdict == "nothing_missing"
-        assert not found.effects
+        assert diagnosis.verdict == "nothing_missing"
+        assert not diagnosis.effects
         assert abs(predicted[0].inside - 0.95) < 3 * np.sqrt(0.95 * 0.05 / 1200)
         return
     assert predicted[0].inside > 0.93
-    assert found.verdict == "found"
-    assert expected in {found.effects[0].effect, *(name.split(" ")[0] for name in found.effects[0].indistinguishable)}
-    held = [one for one in found.anatomy_after if one.use == "holdout"]
-    before = [one for one in found.anatomy_before if one.use == "holdout"]
-    assert held[0].rms < left * before[0].rms
+    assert diagnosis.verdict == "found"
+    assert expected in {diagnosis.effects[0].effect, *(name.split(" ")[0] for name in diagnosis.effects[0].indistinguishable)}
+    held = [series for series in diagnosis.anatomy_after if series.use == "holdout"]
+    before = [series for series in diagnosis.anatomy_before if series.use == "holdout"]
+    assert held[0].rms < error_ratio * before[0].rms
 
 
 @pytest.mark.slow
@@ -181,10 +181,10 @@ def test_linear_damping_that_is_declared_zero_is_found(tmp_path):
     campaign_of(tmp_path, lambda x, v: 0.0)
     with (tmp_path / "platform.yaml").open("w") as file:
         YAML().dump(PLATFORM | {"linear_damping": {"B44": 0.0}}, file)
-    found = found_in(load_campaign(tmp_path))
-    assert [one.effect for one in found.effects] == ["linear_damping"]
-    assert found.effects[0].evidence.probability > 0.9
-    assert found.effects[0].parameters["linear_damping.B44"].value == pytest.approx(2.4, rel=0.05)
+    diagnosis = found_in(load_campaign(tmp_path))
+    assert [effect.effect for effect in diagnosis.effects] == ["linear_damping"]
+    assert diagnosis.effects[0].evidence.probability > 0.9
+    assert diagnosis.effects[0].parameters["linear_damping.B44"].value == pytest.approx(2.4, rel=0.05)
 
 
 @pytest.mark.slow
@@ -193,10 +193,14 @@ def test_a_size_beyond_what_is_plausible_is_not_named(tmp_path):
     campaign_of(tmp_path, lambda x, v: -500.0 * x**3)
     manifest = tmp_path / "campaign.yaml"
     manifest.write_text(manifest.read_text() + "plausible:\n  nonlinear_hydrostatics: 0.2 %\n")
-    found = found_in(load_campaign(tmp_path))
-    mine = [one for one in found.effects if one.effect == "nonlinear_hydrostatics"]
-    assert all(one.in_doubt == IMPLAUSIBLE_SIZE for one in mine)
-    assert all(size.lower <= one.parameters[k].value <= size.upper for one in mine for k, size in one.plausible.items())
+    diagnosis = found_in(load_campaign(tmp_path))
+    hydrostatics = [effect for effect in diagnosis.effects if effect.effect == "nonlinear_hydrostatics"]
+    assert all(effect.in_doubt == IMPLAUSIBLE_SIZE for effect in hydrostatics)
+    assert all(
+        size.lower <= effect.parameters[k].value <= size.upper
+        for effect in hydrostatics
+        for k, size in effect.plausible.items()
+    )
 
 
 # a body that rolls in 2.58 s: off its period, near it, where it makes two modes of one, and heavy enough for that further off
@@ -204,14 +208,14 @@ def test_a_size_beyond_what_is_plausible_is_not_named(tmp_path):
 @pytest.mark.parametrize(("inertia", "period"), [(0.4, 2.35), (0.42, 2.7), (2.8, 3.1)], ids=["off", "near", "heavy"])
 def test_what_swings_in_a_rolling_body(tmp_path, inertia, period):
     """Named, with its period, which no coarse search would meet: a resonance is some hundredths of it wide."""
-    found = found_in(campaign_of(tmp_path, lambda roll, speed: 0.0, (inertia, period, 0.02)))
-    assert [one.effect for one in found.effects] == ["hidden_oscillator"]
-    said = {label.split(".")[-1]: one for label, one in found.effects[0].parameters.items()}
+    diagnosis = found_in(campaign_of(tmp_path, lambda roll, speed: 0.0, (inertia, period, 0.02)))
+    assert [effect.effect for effect in diagnosis.effects] == ["hidden_oscillator"]
+    by_name = {label.split(".")[-1]: parameter for label, parameter in diagnosis.effects[0].parameters.items()}
     for name, true in {"mass": inertia, "period": period, "damping_ratio": 0.02}.items():
-        assert said[name].value == pytest.approx(true, rel=0.01, abs=4 * said[name].standard_deviation), name
-    assert said["period"].standard_deviation < 0.01
+        assert by_name[name].value == pytest.approx(true, rel=0.01, abs=4 * by_name[name].standard_deviation), name
+    assert by_name["period"].standard_deviation < 0.01
     # a small body's centre is known as well, for its size, as a large one's
-    assert said["mass"].standard_deviation < 0.1 * inertia
+    assert by_name["mass"].standard_deviation < 0.1 * inertia
 
 
 @pytest.mark.slow
@@ -230,11 +234,11 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
     with pytest.raises(RuntimeError, match="killed"):
         found_in(campaign, progress=killed, checkpoint=path)
     begun = monotonic()
-    found = found_in(campaign, progress=lambda progress: seen.append(progress.stage), checkpoint=path)
-    assert found.seconds > monotonic() - begun  # with what the first run took
+    diagnosis = found_in(campaign, progress=lambda progress: seen.append(progress.stage), checkpoint=path)
+    assert diagnosis.seconds > monotonic() - begun  # with what the first run took
     assert not any(stage.startswith(("fitting the baseline", "round 1")) for stage in seen)
-    assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
-    assert 0.9 < found.effects[0].evidence.holdout_gain < 1.0
+    assert [effect.effect for effect in diagnosis.effects] == ["nonlinear_hydrostatics"]
+    assert 0.9 < diagnosis.effects[0].evidence.holdout_gain < 1.0
     nothing = SimpleNamespace()
     monkeypatch.setattr(checkpoint, "fingerprint", lambda search: "of another campaign")
     assert checkpoint.load_checkpoint(path, nothing) == []
@@ -264,10 +268,10 @@ def test_a_law_of_ones_own_takes_part(tmp_path):
         load=Sine(),
         sizes={"repeating.strength": 1.0},
     )
-    found = found_in(campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x)), candidates=[own])
-    assert found.effects[0].effect == "repeating"
-    assert_allclose(float(found.augmented.model.values["repeating.strength"]), 4.0, rtol=0.05)
-    assert found.augmented.objective("holdout") < 0.1 * found.baseline.objective("holdout")
+    diagnosis = found_in(campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x)), candidates=[own])
+    assert diagnosis.effects[0].effect == "repeating"
+    assert_allclose(float(diagnosis.augmented.model.values["repeating.strength"]), 4.0, rtol=0.05)
+    assert diagnosis.augmented.objective("holdout") < 0.1 * diagnosis.baseline.objective("holdout")
 
 
 class Runaway(AbstractLoad):
@@ -293,9 +297,11 @@ def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
         load=Runaway(),
         sizes={"runaway.strength": 1.0},
     )
-    found = found_in(campaign_of(tmp_path, lambda x, v: -500.0 * x**3), candidates=[own])
-    assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
-    assert "improbable" in next(describe_refusal(one.reason) for one in found.rejected if one.effect == "runaway")
+    diagnosis = found_in(campaign_of(tmp_path, lambda x, v: -500.0 * x**3), candidates=[own])
+    assert [effect.effect for effect in diagnosis.effects] == ["nonlinear_hydrostatics"]
+    assert "improbable" in next(
+        describe_refusal(rejected.reason) for rejected in diagnosis.rejected if rejected.effect == "runaway"
+    )
 
 
 @pytest.mark.slow
@@ -303,23 +309,23 @@ def test_a_model_of_ones_own_is_calibrated(tmp_path):
     """With a load that no platform file has, freed by its label like any other."""
     campaign = campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x))
     own = campaign.with_model(campaign.model.with_effect(Sine(3.0)))
-    found = calibrate(own, free=["added_mass.A44", "linear_damping.B44", "repeating.strength"])
-    assert_allclose(found.parameters["repeating.strength"].value, 4.0, rtol=0.05)
+    result = calibrate(own, free=["added_mass.A44", "linear_damping.B44", "repeating.strength"])
+    assert_allclose(result.parameters["repeating.strength"].value, 4.0, rtol=0.05)
     with pytest.raises(InputError, match=r"repeating\.strength"):
         calibrate(campaign, free=["repeating.strength"])
 
 
 @pytest.mark.parametrize(
-    ("inertia", "deviation", "told"), [(2.6, 0.17, True), (1.6, 0.17, False), (2.6, 0.9, False), (2.1, 0.17, False)]
+    ("inertia", "deviation", "reported"), [(2.6, 0.17, True), (1.6, 0.17, False), (2.6, 0.9, False), (2.1, 0.17, False)]
 )
-def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told):
+def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, reported):
     """Where it is beyond two of the deviations by which laboratories are wrong, clearly: an error that every fit may make up
     for shows in none. Named as what it is, whatever the other rules say of an effect that takes no error away."""
-    one = Candidate("mass_properties", None, ("mass", "mass_properties.inertia_pitch"))
+    mass = Candidate("mass_properties", None, ("mass", "mass_properties.inertia_pitch"))
     nearly, free = (Prior(np.zeros(2), np.full(2, width)) for width in (1.0, 30.0))
 
-    def away(study, place, prior):
-        z = place.x / prior.width
+    def away(study, point, prior):
+        z = point.x / prior.width
         return z * (1 + (z / 3) ** 2), 0
 
     def state(x, chosen=()):
@@ -328,9 +334,9 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
 
     monkeypatch.setattr(mass_properties_check, "predict_gain", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
     monkeypatch.setattr(mass_properties_check, "prior_residuals", away)
-    after = state([0.1, inertia], (one,))
+    after = state([0.1, inertia], (mass,))
     fits = SimpleNamespace(
-        setup=SimpleNamespace(candidates=[one], prior=nearly),
+        setup=SimpleNamespace(candidates=[mass], prior=nearly),
         count=500.0,
         study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], steps=lambda x: x),
         refit_from=lambda *_: after,
@@ -339,9 +345,9 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         assess=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, Refusal(RefusalKind.NEGLIGIBLE)),
     )
     record = SearchRecord()
-    found = with_mass_properties(Search(fits, record), state([0.1, 0.9 * inertia]))
-    assert (found is after) == told == ("mass_properties" in record.accepted)
-    if told:
+    concluded = with_mass_properties(Search(fits, record), state([0.1, 0.9 * inertia]))
+    assert (concluded is after) == reported == ("mass_properties" in record.accepted)
+    if reported:
         evidence = record.accepted["mass_properties"].verdict
         assert evidence.refused is None and np.isnan(evidence.bic)  # which is of errors
         assert record.notes[0].startswith("inertia pitch is further from the platform file's values")
@@ -359,8 +365,8 @@ def test_a_decay_that_the_seas_take_away_is_said():
         ResidualSummary(np.zeros((6, 1)), np.array(error)[:, None], np.zeros(6))
         for error in ([0.1, 0.1, 0.6, 0.1, 0.1, 0.1], [1.5, 0.19, 1.5, 1.5, 1.5, 1.5])
     )
-    (said,) = abandoned_decays(study, alone, now)
-    assert "the decay a is given up: 75 % of its motion is left, 5 % where decays are fitted alone" in said
+    (note,) = abandoned_decays(study, alone, now)
+    assert "the decay a is given up: 75 % of its motion is left, 5 % where decays are fitted alone" in note
 
 
 def test_every_candidate_can_be_put_into_a_model_of_the_platform():
@@ -369,10 +375,12 @@ def test_every_candidate_can_be_put_into_a_model_of_the_platform():
     mass, stiffness = (np.asarray(m) for m in linearised(model, equilibrium(model)))
     scales = noticeable_scales(mass, stiffness, dict.fromkeys(DOFS, 0.1))
     candidates, free, units = catalogue(model, scales, True, 1.0)
-    assert {"wave_excitation", "wave_drift", "umbilical", "amplitude_dependent_drag"} <= {one.effect for one in candidates}
-    for one in candidates:
-        changed = with_effects(model, one.labels)
-        assert set(one.labels) <= set(changed.values), one.name
-        added = [label for label in one.amplitudes if label not in model.values]  # other terms are declared
+    assert {"wave_excitation", "wave_drift", "umbilical", "amplitude_dependent_drag"} <= {
+        candidate.effect for candidate in candidates
+    }
+    for candidate in candidates:
+        changed = with_effects(model, candidate.labels)
+        assert set(candidate.labels) <= set(changed.values), candidate.name
+        added = [label for label in candidate.amplitudes if label not in model.values]  # other terms are declared
         assert [float(changed.values[label]) for label in added] == [free[label].start for label in added]
-        assert all(units[label] > 0 for label in one.amplitudes)
+        assert all(units[label] > 0 for label in candidate.amplitudes)

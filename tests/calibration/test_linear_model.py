@@ -33,10 +33,10 @@ def linear_model(columns: int, truth: dict[int, float], seed: int = 1, noise: fl
     pool = np.repeat(np.arange(POOLS), ROWS // POOLS)
     decays = []
     if own:
-        mine = slice(0, ROWS // 2)
+        decay_rows = slice(0, ROWS // 2)
         side = random.standard_normal((ROWS // 2, own))
-        residual[mine] -= side @ np.full(own, 2.0)
-        decays.append(OwnUnknowns(mine, side, np.full(own, 50.0), np.full(own, 0.5)))
+        residual[decay_rows] -= side @ np.full(own, 2.0)
+        decays.append(OwnUnknowns(decay_rows, side, np.full(own, 50.0), np.full(own, 0.5)))
     freedom = np.full(POOLS, float(ROWS // POOLS))
     wide, none, share = np.full(columns, 10.0), np.zeros(columns), np.full(ROWS, POOLS / ROWS)
     low, high = none - 1e3, none + 1e3
@@ -45,19 +45,19 @@ def linear_model(columns: int, truth: dict[int, float], seed: int = 1, noise: fl
 
 def test_a_fit_is_the_minimum_of_likelihood_and_priors_found_by_another_method() -> None:
     model = linear_model(3, {0: 0.8, 1: -0.5}, noise=3.0, own=2)
-    found = model.fit([0, 1, 2])
+    fit = model.fit([0, 1, 2])
 
-    def cost(both: np.ndarray) -> float:
-        residual = model.residual + model.slopes @ both[:3]
-        residual[model.own[0].rows] += model.own[0].slopes @ both[3:]
-        own = (model.own[0].value + both[3:]) / model.own[0].width
-        return float(model.deviances(model.levels(residual)).sum() + ((both[:3] / model.width) ** 2).sum() + (own**2).sum())
+    def cost(unknowns: np.ndarray) -> float:
+        residual = model.residual + model.slopes @ unknowns[:3]
+        residual[model.own[0].rows] += model.own[0].slopes @ unknowns[3:]
+        own = (model.own[0].value + unknowns[3:]) / model.own[0].width
+        return float(model.deviances(model.levels(residual)).sum() + ((unknowns[:3] / model.width) ** 2).sum() + (own**2).sum())
 
     best = minimize(cost, np.zeros(5), method="BFGS")
-    assert found.cost == pytest.approx(best.fun, abs=0.02)
-    assert found.step == pytest.approx(best.x[:3], abs=0.02)
-    assert found.own[0] == pytest.approx(best.x[3:], abs=0.02)
-    assert cost(np.append(found.step, found.own[0])) == pytest.approx(found.cost, abs=1e-8)
+    assert fit.cost == pytest.approx(best.fun, abs=0.02)
+    assert fit.step == pytest.approx(best.x[:3], abs=0.02)
+    assert fit.own[0] == pytest.approx(best.x[3:], abs=0.02)
+    assert cost(np.append(fit.step, fit.own[0])) == pytest.approx(fit.cost, abs=1e-8)
 
 
 def test_bounds_hold_and_the_other_columns_are_solved_for_again() -> None:
@@ -72,15 +72,15 @@ def test_bounds_hold_and_the_other_columns_are_solved_for_again() -> None:
 def test_the_evidence_is_the_integral_over_the_columns() -> None:
     model = linear_model(2, {0: 0.1}, noise=1.0)
     model = replace(model, freedom=0.2 * model.freedom)  # wide enough to integrate
-    found = model.fit([0, 1])
+    fit = model.fit([0, 1])
 
     def density(b: float, a: float) -> float:
         step = np.array([a, b])
         cost = model.deviances(model.levels(model.residual + model.slopes @ step)).sum() + ((step / model.width) ** 2).sum()
-        return math.exp(-0.5 * (cost - found.cost)) / (2 * math.pi * model.width.prod())
+        return math.exp(-0.5 * (cost - fit.cost)) / (2 * math.pi * model.width.prod())
 
     total = dblquad(density, -2, 2, -2, 2, epsabs=1e-9)[0]
-    assert model.log_evidence(found) == pytest.approx(math.log(total) - 0.5 * found.cost, abs=0.15)
+    assert model.log_evidence(fit) == pytest.approx(math.log(total) - 0.5 * fit.cost, abs=0.15)
 
 
 def test_a_column_that_is_not_fitted_is_neutral() -> None:
@@ -92,23 +92,23 @@ def test_a_column_that_is_not_fitted_is_neutral() -> None:
 
 
 def selection(model: LinearModel, variants: list[Variant] | None = None, base: int = 2) -> JointSelection:
-    every = [Variant(f"effect {i}", (i,), math.log(0.03)) for i in range(base, model.slopes.shape[1])]
-    return JointSelection(model, range(base), variants or every, np.arange(POOLS))
+    one_per_column = [Variant(f"effect {i}", (i,), math.log(0.03)) for i in range(base, model.slopes.shape[1])]
+    return JointSelection(model, range(base), variants or one_per_column, np.arange(POOLS))
 
 
 def test_the_effects_that_are_there_are_selected_and_no_others() -> None:
-    found = selection(linear_model(20, {0: 1.0, 5: 0.6, 11: -0.8})).run()
-    assert set(found.names(found.best)) == {"effect 5", "effect 11"}
-    probability = found.probability()
+    posterior = selection(linear_model(20, {0: 1.0, 5: 0.6, 11: -0.8})).run()
+    assert set(posterior.names(posterior.best)) == {"effect 5", "effect 11"}
+    probability = posterior.probability()
     assert min(probability["effect 5"], probability["effect 11"]) > 0.95
     assert max(p for name, p in probability.items() if name not in ("effect 5", "effect 11")) < 0.2
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_nothing_is_selected_where_nothing_is_missing(seed: int) -> None:
-    found = selection(linear_model(20, {0: 1.0}, seed)).run()
-    assert found.names(found.best) == ()
-    assert max(found.probability().values(), default=0.0) < 0.5
+    posterior = selection(linear_model(20, {0: 1.0}, seed)).run()
+    assert posterior.names(posterior.best) == ()
+    assert max(posterior.probability().values(), default=0.0) < 0.5
 
 
 def test_of_two_that_look_alike_each_has_its_part_of_the_probability() -> None:
@@ -121,8 +121,8 @@ def test_of_two_that_look_alike_each_has_its_part_of_the_probability() -> None:
 
 def test_a_candidate_is_taken_at_one_of_its_values_only() -> None:
     variants = [Variant("memory", (2,), -3.0), Variant("memory", (3,), -3.0), Variant("friction", (4,), -3.0)]
-    found = selection(linear_model(5, {2: 0.7, 3: 0.7}), variants).run()
-    assert all(len(set(found.names(one))) == len(one.variants) for one in found.subsets)
+    posterior = selection(linear_model(5, {2: 0.7, 3: 0.7}), variants).run()
+    assert all(len(set(posterior.names(subset))) == len(subset.variants) for subset in posterior.subsets)
 
 
 def test_effects_at_the_ends_of_their_ranges_are_taken_alone_or_not_at_all() -> None:
@@ -130,12 +130,12 @@ def test_effects_at_the_ends_of_their_ranges_are_taken_alone_or_not_at_all() -> 
     model = linear_model(8, {3: 0.9, 4: 0.9, 5: 0.5})
     narrow = replace(model, lower=np.where(np.isin(np.arange(8), (3, 4)), -0.6, model.lower), upper=np.full(8, 0.6))
     assert set(selection(model).run().best.variants) == {1, 2, 3}
-    found = selection(narrow).run()
-    assert all(len(one.variants) < 2 for one in found.subsets if one.at_end)
-    assert found.names(found.best) in {("effect 3",), ("effect 4",), ("effect 5",)}
+    posterior = selection(narrow).run()
+    assert all(len(subset.variants) < 2 for subset in posterior.subsets if subset.at_end)
+    assert posterior.names(posterior.best) in {("effect 3",), ("effect 4",), ("effect 5",)}
     once = linear_model(8, {3: 0.9})
-    found = selection(replace(once, upper=np.full(8, 0.6))).run()
-    assert found.names(found.best) == ("effect 3",) and found.best.at_end
+    posterior = selection(replace(once, upper=np.full(8, 0.6))).run()
+    assert posterior.names(posterior.best) == ("effect 3",) and posterior.best.at_end
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -143,10 +143,10 @@ def test_a_minimum_at_a_bound_is_at_it_to_the_last_digit(seed: int) -> None:
     random = np.random.default_rng(seed)
     root, width = random.standard_normal((30, 6)), 10.0 ** random.uniform(-3, 3, 6)
     matrix, slope, high = root.T @ root, 100 * random.standard_normal(6), width / 7
-    found = bounded_minimum(matrix, slope, -high, high)
-    assert (np.abs(found) == high).sum() >= 3
-    at, gradient = np.abs(found) == high, matrix @ found + slope
-    assert (gradient[at] * found[at] < 0).all() and np.abs(gradient[~at]).max(initial=0.0) < 1e-6 * np.abs(slope).max()
+    minimum = bounded_minimum(matrix, slope, -high, high)
+    assert (np.abs(minimum) == high).sum() >= 3
+    at, gradient = np.abs(minimum) == high, matrix @ minimum + slope
+    assert (gradient[at] * minimum[at] < 0).all() and np.abs(gradient[~at]).max(initial=0.0) < 1e-6 * np.abs(slope).max()
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -171,26 +171,26 @@ def test_an_effect_that_hardly_matters_is_not_selected() -> None:
             return float((after**2).sum()) < (1 - share) * float((before**2).sum())
 
         chosen = JointSelection(model, range(2), selection(model).variants, np.arange(POOLS), matters=matters)
-        found = chosen.run()
-        return tuple(sorted(found.names(found.best)))
+        posterior = chosen.run()
+        return tuple(sorted(posterior.names(posterior.best)))
 
-    both, free = ("effect 3", "effect 5"), selection(model).run()
-    assert tuple(sorted(free.names(free.best))) == both == some(0.3)
+    two_effects, free = ("effect 3", "effect 5"), selection(model).run()
+    assert tuple(sorted(free.names(free.best))) == two_effects == some(0.3)
     assert some(0.8) == ("effect 3",)
 
 
 def test_a_set_has_no_more_effects_than_anybody_can_test() -> None:
     """The largest of eleven, each of them sure."""
-    found = selection(linear_model(16, {i: 1.0 + 0.2 * i for i in range(4, 15)})).run()
-    assert set(found.best.variants) == {i - 2 for i in range(7, 15)} and len(found.best.variants) == MAX_EFFECTS
-    assert all(len(one.variants) <= MAX_EFFECTS for one in found.subsets)
+    posterior = selection(linear_model(16, {i: 1.0 + 0.2 * i for i in range(4, 15)})).run()
+    assert set(posterior.best.variants) == {i - 2 for i in range(7, 15)} and len(posterior.best.variants) == MAX_EFFECTS
+    assert all(len(subset.variants) <= MAX_EFFECTS for subset in posterior.subsets)
 
 
 def test_only_the_named_variants_are_selected() -> None:
     model = linear_model(8, {3: 1.0, 5: 1.0})
     chosen = JointSelection(model, range(2), selection(model).variants, np.arange(POOLS), among=[1, 2])
-    found = chosen.run()
-    assert found.names(found.best) == ("effect 3",) and "effect 5" not in found.probability()
+    posterior = chosen.run()
+    assert posterior.names(posterior.best) == ("effect 3",) and "effect 5" not in posterior.probability()
 
 
 def test_a_required_effect_is_in_the_answer_and_keeps_its_probability() -> None:
@@ -200,20 +200,23 @@ def test_a_required_effect_is_in_the_answer_and_keeps_its_probability() -> None:
     def one(**options: Any) -> Selection:
         return JointSelection(model, range(2), selection(model).variants, np.arange(POOLS), **options).run()
 
-    found = one(required=frozenset({"effect 8"}))
-    assert set(found.names(found.best)) == {"effect 5", "effect 8"}
-    assert found.probability()["effect 5"] > 0.95 and found.probability().get("effect 8", 0.0) < 0.5
+    posterior = one(required=frozenset({"effect 8"}))
+    assert set(posterior.names(posterior.best)) == {"effect 5", "effect 8"}
+    assert posterior.probability()["effect 5"] > 0.95 and posterior.probability().get("effect 8", 0.0) < 0.5
     at_end = replace(model, upper=np.where(np.arange(12) == 8, 1e-3, 1e3), lower=np.where(np.arange(12) == 8, -1e-3, -1e3))
-    found = JointSelection(
+    posterior = JointSelection(
         at_end, range(2), selection(model).variants, np.arange(POOLS), required=frozenset({"effect 8"})
     ).run()
-    assert found.names(found.best) == ("effect 5",)  # no set of several has one at the end of its range
+    assert posterior.names(posterior.best) == ("effect 5",)  # no set of several has one at the end of its range
     many = linear_model(16, {i: 1.0 + 0.2 * i for i in range(4, 12)})
     chosen = JointSelection(many, range(2), selection(many).variants, np.arange(POOLS), required=frozenset({"effect 4"}))
-    found = chosen.run(range(3, 11))  # as many as may be, without the required one
-    assert found.best.variants == tuple(range(2, 10)) and max(len(one.variants) for one in found.subsets) == MAX_EFFECTS
-    found = one(required=frozenset({"effect 5"}), matters=lambda before, after: False)
-    assert found.names(found.best) == ("effect 5",)
+    posterior = chosen.run(range(3, 11))  # as many as may be, without the required one
+    assert (
+        posterior.best.variants == tuple(range(2, 10))
+        and max(len(subset.variants) for subset in posterior.subsets) == MAX_EFFECTS
+    )
+    posterior = one(required=frozenset({"effect 5"}), matters=lambda before, after: False)
+    assert posterior.names(posterior.best) == ("effect 5",)
 
 
 def test_a_model_that_leaves_more_than_noise_has_fewer_observations() -> None:
@@ -240,11 +243,11 @@ def test_what_no_effect_explains_makes_every_effect_less_sure() -> None:
 
 def test_what_one_series_alone_shows_is_less_sure_than_what_all_show() -> None:
     everywhere = linear_model(6, {2: 0.6})
-    there = everywhere.pool == 3
+    in_pool = everywhere.pool == 3
     noise = everywhere.residual + 0.6 * everywhere.slopes[:, 2]
-    slopes = everywhere.slopes * np.where(there[:, None] | (np.arange(6) != 2), 1.0, 0.0)
+    slopes = everywhere.slopes * np.where(in_pool[:, None] | (np.arange(6) != 2), 1.0, 0.0)
     once = replace(everywhere, slopes=slopes, residual=noise - 2.5 * slopes[:, 2])
-    sure, unsure = (selection(one).run().probability()["effect 2"] for one in (everywhere, once))
+    sure, unsure = (selection(model).run().probability()["effect 2"] for model in (everywhere, once))
     assert sure > 0.9 and 0.4 < unsure < 0.8  # a series is missing from 37 % of the resamplings
 
 
@@ -253,11 +256,11 @@ def test_a_group_that_is_left_out_is_predicted_by_the_others() -> None:
     model = linear_model(2, {0: 0.8}, own=2)
     group = np.where(np.arange(POOLS) < POOLS // 2, 0, 1)  # the decay, and the rest
     whole = model.fit([0, 1])
-    found = left_out_deviances(model, [0, 1], group, whole)
-    rest = replace(model, freedom=model.freedom * (group == 1)).fit([0, 1])
-    residual = model.residual + model.slopes @ rest.step
+    deviances = left_out_deviances(model, [0, 1], group, whole)
+    others_fit = replace(model, freedom=model.freedom * (group == 1)).fit([0, 1])
+    residual = model.residual + model.slopes @ others_fit.step
     alone = replace(model, residual=residual, freedom=model.freedom * (group == 0)).fit([])
-    assert found[0] == pytest.approx(alone.deviance.sum(), abs=SMALL_CHANGE)
+    assert deviances[0] == pytest.approx(alone.deviance.sum(), abs=SMALL_CHANGE)
     own = model.own[0]
     side = np.linalg.lstsq(own.slopes, -residual[own.rows], rcond=None)[0]
     assert alone.own[0] == pytest.approx(side, abs=0.05)
@@ -266,26 +269,26 @@ def test_a_group_that_is_left_out_is_predicted_by_the_others() -> None:
 def test_an_effect_that_is_there_predicts_what_is_left_out_and_another_does_not() -> None:
     model, group = linear_model(4, {2: 0.8}), np.arange(POOLS) // 3
     without = model.fit([0, 1])
-    there, absent = (held_out_gain(model, model.fit([0, 1, column]), without, group) for column in (2, 3))
-    assert there.shape == (4,) and (there > 0).all()
-    assert absent.sum() < 4.0 < there.sum()
+    present, absent = (held_out_gain(model, model.fit([0, 1, column]), without, group) for column in (2, 3))
+    assert present.shape == (4,) and (present > 0).all()
+    assert absent.sum() < 4.0 < present.sum()
 
 
 def test_products_after_a_fit_are_those_of_its_rows() -> None:
     """With weights of the fit, and the decay's own unknowns eliminated where the fit has moved them."""
     model = replace(linear_model(3, {0: 0.8}, noise=3.0, own=2), neutral=np.array([0.0, 0.4, 0.0]))
     model.own[0].value[:] = 0.3
-    found = model.fit([0])
-    residual = model.residual_after(found)
-    assert found.levels == pytest.approx(model.levels(residual), rel=1e-10)
+    fit = model.fit([0])
+    residual = model.residual_after(fit)
+    assert fit.levels == pytest.approx(model.levels(residual), rel=1e-10)
     weight = (model.freedom / np.maximum(model.levels(residual), 1.0))[model.pool] * model.share
-    one, every = model.own[0], np.column_stack([model.slopes, residual])
-    whole = every.T @ (weight[:, None] * every)
-    side = weight[one.rows, None] * one.slopes
-    cross = side.T @ every[one.rows]
-    cross[:, -1] += (one.value + found.own[0]) / one.width**2
-    whole -= cross.T @ np.linalg.solve(side.T @ one.slopes + np.diag(1 / one.width**2), cross)
-    assert model.products_after(found) == pytest.approx(whole, rel=1e-8, abs=1e-8)
+    decay, columns = model.own[0], np.column_stack([model.slopes, residual])
+    whole = columns.T @ (weight[:, None] * columns)
+    side = weight[decay.rows, None] * decay.slopes
+    cross = side.T @ columns[decay.rows]
+    cross[:, -1] += (decay.value + fit.own[0]) / decay.width**2
+    whole -= cross.T @ np.linalg.solve(side.T @ decay.slopes + np.diag(1 / decay.width**2), cross)
+    assert model.products_after(fit) == pytest.approx(whole, rel=1e-8, abs=1e-8)
 
 
 def test_later_rounds_are_along_the_candidates_that_are_listed() -> None:
