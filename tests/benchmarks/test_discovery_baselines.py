@@ -41,9 +41,9 @@ def decay(use: str, amplitude: float, friction: float) -> ForcedTest:
     gain = 0.5 + 0.5 * np.cos(np.pi * np.clip(omega / (2 * np.pi / 140.0) / 6 - 0.5, 0.0, 1.0))
     raw = np.fft.irfft(impedance * np.fft.rfft((x - x0) * first), len(time))
     force, acceleration, peak = filtered(raw * second, gain), np.gradient(v, STEP), 100.0 if friction else 0.0
-    one = RecoveredForce(test, "surge", force, x, v, acceleration, (x0, v0), gain, second, inside, 10.0, peak)
+    recovered = RecoveredForce(test, "surge", force, x, v, acceleration, (x0, v0), gain, second, inside, 10.0, peak)
     relative = {"surge": max(float(np.std(x - x0) / np.std(x)), 0.01)}
-    return ForcedTest({"surge": one}, *(np.array([[value]]) for value in (MASS, DAMPING, STIFFNESS)), relative)
+    return ForcedTest({"surge": recovered}, *(np.array([[value]]) for value in (MASS, DAMPING, STIFFNESS)), relative)
 
 
 def made(friction: float) -> Reconstruction:
@@ -81,11 +81,16 @@ def test_friction_is_named(with_friction: Reconstruction, method: str, package: 
 
 
 def test_nothing_is_named_where_no_force_is_seen():
-    found = made(0.0)
-    assert found.motions() == []
-    answer = answer_of_laws(found, [])
+    reconstruction = made(0.0)
+    assert reconstruction.motions() == []
+    answer = answer_of_laws(reconstruction, [])
     assert answer.verdict == "nothing_missing" and not answer.effects
-    assert answer.held_out_error.final == answer.held_out_error.baseline == held_out_error(found, []) == pytest.approx(0.01)
+    assert (
+        answer.held_out_error.final
+        == answer.held_out_error.baseline
+        == held_out_error(reconstruction, [])
+        == pytest.approx(0.01)
+    )
 
 
 def test_what_no_law_helps_is_unexplained(with_friction: Reconstruction):
@@ -100,21 +105,23 @@ def test_the_hysteretic_term_is_that_of_bouc_and_wen():
 
 def test_forces_of_a_campaign_are_reconstructed(tmp_path: Path):
     """Of the embedded decays: the fit's own errors without a force, smaller ones with the force; kept for another method."""
-    kept = tmp_path / "forces" / "demo.pickle"
-    found = reconstructed(DEMO, kept)
-    assert [len(found.of_use(use)) for use in ("fit", "holdout")] == [9, 0]
-    for one in found.tests:
-        assert one.errors_with({}) == pytest.approx(one.relative, rel=1e-12)
-        assert np.linalg.eigvalsh((one.mass + one.mass.T) / 2).min() > 0 and (np.diag(one.damping) > 0).all()
-        mended = one.errors_with({name: force.force for name, force in one.forces.items()})
-        assert all(mended[name] <= error for name, error in one.relative.items())
-    again = reconstructed(tmp_path / "not read", kept)
-    assert again.minutes == found.minutes and again.motions() == found.motions()
+    file = tmp_path / "forces" / "demo.pickle"
+    first = reconstructed(DEMO, file)
+    assert [len(first.of_use(use)) for use in ("fit", "holdout")] == [9, 0]
+    for test in first.tests:
+        assert test.errors_with({}) == pytest.approx(test.relative, rel=1e-12)
+        assert np.linalg.eigvalsh((test.mass + test.mass.T) / 2).min() > 0 and (np.diag(test.damping) > 0).all()
+        mended = test.errors_with({name: force.force for name, force in test.forces.items()})
+        assert all(mended[name] <= error for name, error in test.relative.items())
+    second = reconstructed(tmp_path / "not read", file)
+    assert second.minutes == first.minutes and second.motions() == first.motions()
 
 
 def test_terms_stand_for_effects_of_the_benchmark():
     """By motion where they differ."""
-    names = {effect for one in EFFECT_OF.values() for effect in ([one] if isinstance(one, str) else one.values())}
+    names = {
+        effect for effects in EFFECT_OF.values() for effect in ([effects] if isinstance(effects, str) else effects.values())
+    }
     assert names - {""} <= set(EFFECTS)
     assert effect_of("x^3", "surge") == "mooring_nonlinearity" and effect_of("x^3", "heave") == "nonlinear_hydrostatics"
     assert effect_of("v of pitch", "surge") == "coupled_damping" and effect_of("v", "heave") == ""
@@ -123,7 +130,7 @@ def test_terms_stand_for_effects_of_the_benchmark():
 def test_campaigns_are_answered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, with_friction: Reconstruction, capsys):
     """The command writes a file of answers that can be scored; a folder without campaigns is an error."""
     pytest.importorskip("pysindy")
-    monkeypatch.setattr(baselines, "reconstructed", lambda folder, kept: with_friction)
+    monkeypatch.setattr(baselines, "reconstructed", lambda folder, file: with_friction)
     folder, name = tmp_path / "campaigns", Case.of("coulomb_friction-2-1").public_name
     (folder / name).mkdir(parents=True)
     make_campaigns.write_index(folder)

@@ -20,12 +20,12 @@ SHORT = {"surge": 12.0, "heave": 8.0, "pitch": 10.0, "sea": 12.0}  # s
 
 def test_halves_are_stable_and_balanced():
     """By kind and strength they differ by one case at most, by strength not at all."""
-    every = list(cases())
-    assert len(every) == len(set(every)) == 244
-    halves = {half: [case for case in every if case.half == half] for half in HALVES}
-    assert not set(halves["set"]) & set(halves["report"]) and sum(map(len, halves.values())) == len(every)
-    kinds, strengths, both = (
-        {half: Counter(map(key, some)) for half, some in halves.items()}
+    all_cases = list(cases())
+    assert len(all_cases) == len(set(all_cases)) == 244
+    halves = {half: [case for case in all_cases if case.half == half] for half in HALVES}
+    assert not set(halves["set"]) & set(halves["report"]) and sum(map(len, halves.values())) == len(all_cases)
+    kinds, strengths, kinds_and_strengths = (
+        {half: Counter(map(key, half_cases)) for half, half_cases in halves.items()}
         for key in (
             lambda case: case.effect,
             lambda case: (case.effect in EFFECTS, case.strength),
@@ -35,9 +35,13 @@ def test_halves_are_stable_and_balanced():
     assert all(abs(kinds["set"][kind] - kinds["report"][kind]) <= 1 for kind in (*EFFECTS, *OUTSIDE, *PAIRS, ""))
     assert [strengths[half][True, strength] for half in HALVES for strength in (1, 2, 3)] == [27] * 6
     assert [kinds[half][""] for half in HALVES] == [20, 20]
-    assert all(abs(both["set"][one] - both["report"][one]) <= 1 for one in both["set"] if one[0])
-    some = ("umbilical-2-1", "umbilical-2-2", "wave_reflection-3-1", "current+wave_drift-2-1", "cogging-1-1", "nothing-40")
-    assert [Case.of(name).half for name in some] == ["report", "set", "report", "set", "set", "set"]  # for ever
+    assert all(
+        abs(kinds_and_strengths["set"][key] - kinds_and_strengths["report"][key]) <= 1
+        for key in kinds_and_strengths["set"]
+        if key[0]
+    )
+    names = ("umbilical-2-1", "umbilical-2-2", "wave_reflection-3-1", "current+wave_drift-2-1", "cogging-1-1", "nothing-40")
+    assert [Case.of(name).half for name in names] == ["report", "set", "report", "set", "set", "set"]  # for ever
 
 
 def test_names_are_stable_numbers():
@@ -73,9 +77,9 @@ def test_campaigns_are_made_without_answers(tmp_path: Path, monkeypatch: pytest.
     assert stopped.value.code == 2 and "benchmark.json: tank: expected another" in capsys.readouterr().err
 
 
-def claim(effect, motion=None, probability=None, others=()):
+def claim(effect, motion=None, probability=None, alike=()):
     """An effect as a file of answers has it."""
-    return {"effect": effect, "motion": motion, "probability": probability, "indistinguishable_from": list(others)}
+    return {"effect": effect, "motion": motion, "probability": probability, "indistinguishable_from": list(alike)}
 
 
 def answer(*effects, verdict="found", errors=None, minutes=None, considered=()):
@@ -113,8 +117,8 @@ def benchmark(tmp_path: Path) -> Path:
     for name in (*ANSWERS, "umbilical-2-1"):
         (folder / Case.of(name).public_name).mkdir(parents=True)
     make_campaigns.write_index(folder)
-    said = {Case.of(name).public_name: one for name, one in ANSWERS.items()}
-    (tmp_path / "mine.json").write_text(json.dumps({"method": "mine", "campaigns": said}))
+    campaigns = {Case.of(name).public_name: answer for name, answer in ANSWERS.items()}
+    (tmp_path / "mine.json").write_text(json.dumps({"method": "mine", "campaigns": campaigns}))
     return folder
 
 
@@ -146,17 +150,17 @@ def test_answers_are_scored(benchmark: Path, capsys):
     assert result["table"]["minutes_median"]["all"] == 2.0 and result["table"]["minutes_largest"]["all"] == 3.0
     assert result["outcomes"][Case.of("hysteresis-2-1").public_name] == "in the set"
     assert result["reliability"][-1] == {"from": 0.9, "to": 1.0, "mean": pytest.approx(0.96), "there": 1, "of": 4}
-    said = capsys.readouterr().out
-    assert "| missing effect named first | 0 of 1 | 1 of 4 | 0 of 1 | 1 of 6 |" in said
+    output = capsys.readouterr().out
+    assert "| missing effect named first | 0 of 1 | 1 of 4 | 0 of 1 | 1 of 6 |" in output
 
 
 def test_a_part_is_scored(benchmark: Path):
     """A half, and only what is answered."""
     assert scored(benchmark, "--answered-only")["table"]["named_first"]["all"] == {"count": 1, "of": 5}
     halves = [scored(benchmark, "--half", half) for half in HALVES]
-    assert sum(one["campaigns"] for one in halves) == 12 and all(one["half"] for one in halves)
-    for half, one in zip(HALVES, halves, strict=True):
-        assert set(one["outcomes"]) == {
+    assert sum(half_score["campaigns"] for half_score in halves) == 12 and all(half_score["half"] for half_score in halves)
+    for half, half_score in zip(HALVES, halves, strict=True):
+        assert set(half_score["outcomes"]) == {
             case.public_name for case in map(Case.of, (*ANSWERS, "umbilical-2-1")) if case.half == half
         }
 
@@ -177,22 +181,22 @@ def test_mistakes_in_answers_are_told(benchmark: Path, capsys, change: dict, mes
     (benchmark.parent / "mine.json").write_text(json.dumps(change))
     with pytest.raises(SystemExit) as stopped:
         scored(benchmark)
-    said = capsys.readouterr().err
-    assert stopped.value.code == 2 and "mine.json" in said and message in said, said
+    errors = capsys.readouterr().err
+    assert stopped.value.code == 2 and "mine.json" in errors and message in errors, errors
 
 
 def test_a_diagnosis_is_an_answer(benchmark: Path):
     """With its effects, errors and time, and with probabilities where it states them."""
     saved = document(fake_diagnosis()).model_dump(mode="json")
     saved["missing"]["rejected"][0]["probability"] = 0.01
-    found = answer_of(saved)
-    assert found.verdict == "found" and found.minutes == 321.0 / 60
-    assert found.effects == [
+    answer = answer_of(saved)
+    assert answer.verdict == "found" and answer.minutes == 321.0 / 60
+    assert answer.effects == [
         ClaimedEffect(effect="coulomb_friction", motion="surge", probability=0.97, indistinguishable_from=["hysteresis"])
     ]
-    assert {one.effect: one.probability for one in found.considered} == {"current": 0.01, "hysteresis": 0.02}
-    assert found.held_out_error.final < found.held_out_error.baseline
-    write_answers(benchmark.parent / "mine.json", {Case.of("hysteresis-2-1").public_name: found})
+    assert {claim.effect: claim.probability for claim in answer.considered} == {"current": 0.01, "hysteresis": 0.02}
+    assert answer.held_out_error.final < answer.held_out_error.baseline
+    write_answers(benchmark.parent / "mine.json", {Case.of("hysteresis-2-1").public_name: answer})
     assert scored(benchmark, "--answered-only")["table"]["named_or_in_set"]["all"] == {"count": 1, "of": 1}
 
 
@@ -202,6 +206,6 @@ def test_complete_diagnoses_are_not_run_again(tmp_path: Path):
     done = tmp_path / "results" / "done"
     done.mkdir(parents=True)
     (done / "diagnosis.json").write_text(json.dumps(document(fake_diagnosis()).model_dump(mode="json")))
-    found = dict(diagnose_all(tmp_path / "no-campaigns", ["done", "absent"], tmp_path / "results", 1))
-    assert found["done"].effects[0].effect == "coulomb_friction"
-    assert found["absent"].startswith("exit status 2: ") and "absent" in found["absent"]
+    outcomes = dict(diagnose_all(tmp_path / "no-campaigns", ["done", "absent"], tmp_path / "results", 1))
+    assert outcomes["done"].effects[0].effect == "coulomb_friction"
+    assert outcomes["absent"].startswith("exit status 2: ") and "absent" in outcomes["absent"]

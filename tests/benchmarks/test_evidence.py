@@ -59,10 +59,10 @@ def test_motions_of_a_decay_are_kept_for_its_figures() -> None:
     time = np.linspace(0.0, 1.0, 5)
     series = calibration_result.Series("roll", np.sin(time), np.cos(time), 0.1, 0.01, True)
     test = calibration_result.TestFit("roll-1", "fit", "decay", "roll", time, (series,), {"roll": 2 * time}, "roll.csv")
-    again = measured_runs.test_of(json.loads(json.dumps(measured_runs.motions_of(test))))
-    assert (again.id, again.use, again.kind, again.degree_of_freedom) == ("roll-1", "fit", "decay", "roll")
-    assert again.main.rmse == series.rmse and again.main.noise == series.noise and again.main.scored
-    assert np.array_equal(again.time, time) and np.array_equal(again.start["roll"], 2 * time)
+    restored = measured_runs.test_of(json.loads(json.dumps(measured_runs.motions_of(test))))
+    assert (restored.id, restored.use, restored.kind, restored.degree_of_freedom) == ("roll-1", "fit", "decay", "roll")
+    assert restored.main.rmse == series.rmse and restored.main.noise == series.noise and restored.main.scored
+    assert np.array_equal(restored.time, time) and np.array_equal(restored.start["roll"], 2 * time)
 
 
 def test_results_of_a_clone_are_enough(folders: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -87,15 +87,15 @@ def test_a_section_without_results_stays(folders: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr("benchmarks.evidence.hulls.run", lambda figures: Section("New", "words", (), ()))
     monkeypatch.setattr("sys.argv", ["validate", "--text", "--only", "seeds", "hulls"])
     validate.main()
-    said, text = capsys.readouterr().out, page.read_text()
-    assert "skipped: no result 'seed-1'" in said and "the page keeps what it had" in said
+    output, text = capsys.readouterr().out, page.read_text()
+    assert "skipped: no result 'seed-1'" in output and "the page keeps what it had" in output
     assert "## Former\n" in text and "## New" in text and "Former hulls" not in text
 
 
 def test_the_text_of_hulls_is_made_of_results() -> None:
     """As on the page, of the results that are kept."""
-    known = json.loads((Path(common.ROOT) / "docs" / "evidence" / "hulls.json").read_text())
-    results = {name: one["result"] for name, one in known.items()}
+    evidence = json.loads((Path(common.ROOT) / "docs" / "evidence" / "hulls.json").read_text())
+    results = {name: entry["result"] for name, entry in evidence.items()}
     panels = json.loads(hulls.POTENTIAL.read_text("utf-8"))
     text = hulls_text.words(results, results["variants"], panels)
     page = " ".join((Path(common.ROOT) / "docs" / "validation.md").read_text().split())

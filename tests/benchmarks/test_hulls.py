@@ -59,15 +59,15 @@ def moved(name: str) -> dict[str, float]:
     "name", [pytest.param(name, marks=() if name in ("oc3-hywind", "ship-section") else pytest.mark.slow) for name in CASES]
 )
 def test_natural_periods(name: str) -> None:
-    found = own_periods(name)
+    periods_found = own_periods(name)
     own = reference(name).periods()
-    assert found == pytest.approx(own, rel=2e-4)
+    assert periods_found == pytest.approx(own, rel=2e-4)
     for published in PUBLISHED.get(name, ()):
         for dof, frequency in published.frequency.items():
             within = TOLERANCES[name][dof] + published.rounding / frequency
-            assert found[dof] * frequency == pytest.approx(1.0, abs=within), (dof, published.source)
+            assert periods_found[dof] * frequency == pytest.approx(1.0, abs=within), (dof, published.source)
     for dof, within in PANELS.get(name, {}).items():
-        assert found[dof] == pytest.approx(POTENTIAL[name]["periods"][dof], rel=within)
+        assert periods_found[dof] == pytest.approx(POTENTIAL[name]["periods"][dof], rel=within)
 
 
 @pytest.mark.parametrize(
@@ -84,15 +84,15 @@ def test_a_small_regular_wave(name: str) -> None:
 
 @pytest.mark.slow
 def test_a_step_is_two_members() -> None:
-    other = model_of(two_members(platform_of(CASES["oc4-deepcwind"])))
-    assert periods(other) == pytest.approx(own_periods("oc4-deepcwind"), rel=1e-6)
+    split = model_of(two_members(platform_of(CASES["oc4-deepcwind"])))
+    assert periods(split) == pytest.approx(own_periods("oc4-deepcwind"), rel=1e-6)
 
 
 @pytest.mark.slow
 def test_a_step_is_two_members_in_waves() -> None:
     case = CASES["oc4-deepcwind"]
-    found, first = motion(model_of(two_members(platform_of(case))), case), moved("oc4-deepcwind")
-    assert [found[dof] for dof in case.moved] == pytest.approx([first[dof] for dof in case.moved], rel=1e-6)
+    split_motion, first = motion(model_of(two_members(platform_of(case))), case), moved("oc4-deepcwind")
+    assert [split_motion[dof] for dof in case.moved] == pytest.approx([first[dof] for dof in case.moved], rel=1e-6)
 
 
 def test_a_model_at_one_fiftieth() -> None:
@@ -104,8 +104,8 @@ def test_a_model_at_one_fiftieth() -> None:
 @pytest.mark.slow
 def test_a_model_at_one_fiftieth_in_waves() -> None:
     case, scale = CASES["oc4-deepcwind"], 1 / 50
-    found, first = motion(model_of(scaled(platform_of(case), scale)), case, scale), moved("oc4-deepcwind")
-    turned = {dof: found[dof] * (scale if dof == "pitch" else 1.0) for dof in case.moved}
+    scaled_motion, first = motion(model_of(scaled(platform_of(case), scale)), case, scale), moved("oc4-deepcwind")
+    turned = {dof: scaled_motion[dof] * (scale if dof == "pitch" else 1.0) for dof in case.moved}
     assert turned == pytest.approx({dof: first[dof] for dof in case.moved}, rel=1e-6)
 
 
@@ -134,8 +134,8 @@ def test_a_spar_pitches_about_a_point_far_below() -> None:
 @pytest.mark.parametrize("name", [name for name in CASES if name != "volturnus-s"])
 def test_platform_files_float_near_their_reference_position(name: str) -> None:
     """Published mass, geometry and pull of the lines balance; the barge's lines pull it 3.4 % of its draught down."""
-    rest = np.asarray(jh.equilibrium(model(name)))
-    assert rest[2] == pytest.approx(reference(name).heave, abs=1e-5)
-    assert abs(rest[2]) < (0.14 if name == "iti-barge" else 0.02)
-    assert np.abs(rest[[0, 1, 3, 4, 5]]).max() < 1e-6
+    equilibrium = np.asarray(jh.equilibrium(model(name)))
+    assert equilibrium[2] == pytest.approx(reference(name).heave, abs=1e-5)
+    assert abs(equilibrium[2]) < (0.14 if name == "iti-barge" else 0.02)
+    assert np.abs(equilibrium[[0, 1, 3, 4, 5]]).max() < 1e-6
     assert load_platform(CASES[name].path).name

@@ -34,18 +34,18 @@ def test_lines_agree_with_moordyn() -> None:
     runs = {(r["offset"], r["segments"], r["bed_stiffness"]): r for r in json.loads(MOORDYN.read_text("utf-8"))}
     assert set(runs) == set(RUNS)
     for ours in results["offsets"]:
-        theirs = of_moordyn(runs[ours["offset"], SEGMENTS[-1], BED], results["weight"])
-        apart = differences(ours, theirs)
+        moordyn = of_moordyn(runs[ours["offset"], SEGMENTS[-1], BED], results["weight"])
+        apart = differences(ours, moordyn)
         assert len(apart) == (8 if ours["offset"] else 7) and max(map(abs, apart.values())) < GOAL
-    assert [one["offset"] for one in results["offsets"]] == list(OFFSETS)
+    assert [state["offset"] for state in results["offsets"]] == list(OFFSETS)
 
 
 def test_length_on_the_seabed_of_a_run() -> None:
     """What the bed and a pressed-down anchor carry; an anchor that is lifted carries nothing."""
-    found = of_moordyn(RUN, 1000.0)
-    assert found["lines"] == [{"fairlead": pytest.approx(5.0e5), "anchor": 3.0e5, "on_seabed": pytest.approx(100.0)}]
+    flat = of_moordyn(RUN, 1000.0)
+    assert flat["lines"] == [{"fairlead": pytest.approx(5.0e5), "anchor": 3.0e5, "on_seabed": pytest.approx(100.0)}]
     lifted = of_moordyn(RUN | {"anchor": [[3.0e5, 0.0, 2.0e4]], "bed": [0.0]}, 1000.0)
-    assert lifted["lines"][0]["on_seabed"] == 0.0 and math.hypot(*found["force"]) == pytest.approx(5.0e5)
+    assert lifted["lines"][0]["on_seabed"] == 0.0 and math.hypot(*flat["force"]) == pytest.approx(5.0e5)
 
 
 def test_only_the_numerics_of_the_exported_file_change() -> None:

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 
 # one size of batch, CMA-ES's apart: less to compile
 CHOSEN: dict[str, PopulationSearch] = {
-    one.name: one for one in (CMAES(), Genetic(population=33), DifferentialEvolution(population=11))
+    method.name: method for method in (CMAES(), Genetic(population=33), DifferentialEvolution(population=11))
 }
 
 
@@ -32,20 +32,22 @@ def search(campaign: Campaign, name: str, seed: int, budget: Budget = Budget(), 
 
 
 @pytest.fixture(scope="module")
-def found(campaign: Campaign) -> dict[str, Found]:
+def searches(campaign: Campaign) -> dict[str, Found]:
     """Every method once."""
     return {name: search(campaign, name, 1, ENOUGH) for name in CHOSEN}
 
 
 @pytest.mark.parametrize("name", CHOSEN)
-def test_every_method_finds_the_coefficients(name: str, found: dict[str, Found], campaign: Campaign) -> None:
-    one = found[name]
-    assert one.method == name and one.ended == "reached" and true_objective(campaign) < one.objective <= ENOUGH.objective
-    assert set(one.values) == set(SHIP_TRUE)
-    period = [jh.natural_modes(model_of(SHIP, values)).of("roll") for values in (one.values, SHIP_TRUE)]
+def test_every_method_finds_the_coefficients(name: str, searches: dict[str, Found], campaign: Campaign) -> None:
+    result = searches[name]
+    assert (
+        result.method == name and result.ended == "reached" and true_objective(campaign) < result.objective <= ENOUGH.objective
+    )
+    assert set(result.values) == set(SHIP_TRUE)
+    period = [jh.natural_modes(model_of(SHIP, values)).of("roll") for values in (result.values, SHIP_TRUE)]
     assert period[0] == pytest.approx(period[1], rel=2e-3)
-    assert one.values["quadratic_damping.B44"] == pytest.approx(SHIP_TRUE["quadratic_damping.B44"], rel=0.2)
-    check_history(one)
+    assert result.values["quadratic_damping.B44"] == pytest.approx(SHIP_TRUE["quadratic_damping.B44"], rel=0.2)
+    check_history(result)
 
 
 @pytest.mark.parametrize("name", CHOSEN)
@@ -54,22 +56,22 @@ def test_the_same_seed_gives_the_same_search_and_leaves_others_chance_alone(name
         return np.random.get_state()[1].copy()  # noqa: NPY002
 
     budget, before = Budget(math.inf, 400.0), state()
-    one, same, other = (search(campaign, name, seed, budget) for seed in (7, 7, 8))
-    assert one.values == same.values and one.objective == same.objective and one.simulations == same.simulations
-    assert one.values != other.values and one.ended == "budget" and 400 <= one.simulations < 400 + 36
+    first, same, other_seed = (search(campaign, name, seed, budget) for seed in (7, 7, 8))
+    assert first.values == same.values and first.objective == same.objective and first.simulations == same.simulations
+    assert first.values != other_seed.values and first.ended == "budget" and 400 <= first.simulations < 400 + 36
     np.testing.assert_array_equal(state(), before)
 
 
 def test_ctrl_c_gives_what_was_reached(campaign: Campaign) -> None:
-    said: list[Progress] = []
+    reports: list[Progress] = []
 
     def stop(p: Progress) -> None:
-        said.append(p)
-        if sum(math.isfinite(p.objective) for p in said) == 2:
+        reports.append(p)
+        if sum(math.isfinite(p.objective) for p in reports) == 2:
             raise KeyboardInterrupt
 
     for name in CHOSEN:
-        said.clear()
+        reports.clear()
         with pytest.raises(SearchInterrupted) as caught:
             search(campaign, name, 1, progress=stop)
         partial = caught.value.partial

@@ -42,11 +42,11 @@ def test_deviations_in_a_band() -> None:
 def test_deviations_and_rounding() -> None:
     """A period of 30 s that is published as 0.033 Hz is known to 1.5 %."""
     published = Published("a report", {"heave": 20.2, "pitch": 30.0, "yaw": 80.0}, 1000.0, tension=100.0, rounding=1.5e-3)
-    found = {one.quantity: one for one in compared(STATICS, published)}
-    assert found["mass"].deviation == pytest.approx(0.01) and found["mass"].within
-    assert found["line tension"].deviation == pytest.approx(0.0)
-    assert found["pitch period"].rounding == pytest.approx(0.045) and found["pitch period"].within
-    assert "displaced volume" not in found and not found["yaw period"].within
+    by_quantity = {comparison.quantity: comparison for comparison in compared(STATICS, published)}
+    assert by_quantity["mass"].deviation == pytest.approx(0.01) and by_quantity["mass"].within
+    assert by_quantity["line tension"].deviation == pytest.approx(0.0)
+    assert by_quantity["pitch period"].rounding == pytest.approx(0.045) and by_quantity["pitch period"].within
+    assert "displaced volume" not in by_quantity and not by_quantity["yaw period"].within
 
 
 def test_values_of_a_deck_are_changed_in_a_copy(tmp_path: Path) -> None:

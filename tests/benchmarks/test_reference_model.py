@@ -83,16 +83,16 @@ def test_angles():
 
 def test_hydrostatics_closed_form():
     model = model_of()
-    found = model.geometry_hydrostatics()
+    hydrostatics = model.geometry_hydrostatics()
     z_b = (20 * AREAS.sum() * -10 + PONTOONS * -16.5) / VOLUME
-    assert found["displaced_volume"] == pytest.approx(VOLUME, rel=1e-12)
-    assert found["C33"] == pytest.approx(RHO * G * AREAS.sum(), rel=1e-12)
+    assert hydrostatics["displaced_volume"] == pytest.approx(VOLUME, rel=1e-12)
+    assert hydrostatics["C33"] == pytest.approx(RHO * G * AREAS.sum(), rel=1e-12)
     for k, dof, name in ((1, 3, "C44"), (0, 4, "C55")):
         buoyancy = RHO * G * ((AREAS * XY[:, k] ** 2 + np.pi * RADII**4 / 4).sum() + VOLUME * z_b)
-        assert found[name + "_buoyancy"] == pytest.approx(buoyancy, rel=1e-12)
-        assert found[name] == pytest.approx(buoyancy + demo.MASS * G * 2.4, rel=1e-12)
-        assert stiffness(model, dof) == pytest.approx(found[name], rel=1e-6)  # of the moment itself
-    assert stiffness(model, 2) == pytest.approx(found["C33"], rel=1e-9)
+        assert hydrostatics[name + "_buoyancy"] == pytest.approx(buoyancy, rel=1e-12)
+        assert hydrostatics[name] == pytest.approx(buoyancy + demo.MASS * G * 2.4, rel=1e-12)
+        assert stiffness(model, dof) == pytest.approx(hydrostatics[name], rel=1e-6)  # of the moment itself
+    assert stiffness(model, 2) == pytest.approx(hydrostatics["C33"], rel=1e-9)
 
 
 def test_inclined_and_rectangular_waterplanes():
@@ -103,10 +103,10 @@ def test_inclined_and_rectangular_waterplanes():
     model = model_of(
         members=members, rigid_body={"mass": 1e5, "centre_of_mass": [0, 0, -5], "inertia": {"Ixx": 1e9, "Iyy": 1e9, "Izz": 1e9}}
     )
-    found = model.geometry_hydrostatics()
-    weight = np.array([0, 0, RHO * G * found["displaced_volume"] - 1e5 * G])
+    hydrostatics = model.geometry_hydrostatics()
+    weight = np.array([0, 0, RHO * G * hydrostatics["displaced_volume"] - 1e5 * G])
     for dof, name in ((2, "C33"), (3, "C44"), (4, "C55")):
-        assert stiffness(model, dof) == pytest.approx(found[name], rel=1e-6)
+        assert stiffness(model, dof) == pytest.approx(hydrostatics[name], rel=1e-6)
     assert_allclose(static(model, np.zeros(6))[:3], weight, atol=1e-6)
 
 
@@ -157,9 +157,9 @@ def test_heave_is_the_analytic_oscillator():
     model = model_of(coefficients=coefficients(pontoon_Ca_z=1.87, column_Ca_z=0.12))
     mass = demo.MASS + RHO * 1.87 * PONTOONS + 0.12 * MASS_OF_ENDS
     omega = np.sqrt(RHO * G * AREAS.sum() / mass)
-    rest = (demo.MASS / RHO - VOLUME) / AREAS.sum()
+    equilibrium = (demo.MASS / RHO - VOLUME) / AREAS.sum()
     t, q = model.decay([0, 0, 2.0, 0, 0, 0], duration=10 * 2 * np.pi / omega, tolerance=1e-11)
-    assert_allclose(q[:, 2], 2.0 * np.cos(omega * t) - rest, atol=1e-6)
+    assert_allclose(q[:, 2], 2.0 * np.cos(omega * t) - equilibrium, atol=1e-6)
     assert np.abs(np.delete(q, 2, axis=1)).max() < 1e-9
 
     model = model_of(
@@ -247,9 +247,9 @@ def test_energy_is_conserved():
         return total
 
     start = state_of([8.0, 2.0, 2.5, 0.06, 0.1, 0.08], [0.0, 0.2, 0.0, 0.0, 0.0, 0.005])
-    kept = np.array([energy(y) for y in states(model, start, np.linspace(0.0, 130.0, 40))])
+    energies = np.array([energy(y) for y in states(model, start, np.linspace(0.0, 130.0, 40))])
     swing = energy(start) - energy(state_of(model.equilibrium()))
-    assert np.abs(kept - kept[0]).max() < 1e-7 * swing
+    assert np.abs(energies - energies[0]).max() < 1e-7 * swing
 
 
 def test_pitch_amplitude_is_kept_with_added_mass():

@@ -25,14 +25,14 @@ STANDARD = 9.80665  # physics.md's numbers
 SEA = [[1.2, 0.5, 0.3, 0.4], [0.9, 0.62, -0.5, 1.9], [0.7, 0.62, 0.8, -2.0], [0.5, 0.8, 2.0, 0.7]]  # a, omega, to, phase
 
 
-def column(d=1.0, draught=20.0, top=10.0, x=0.0, coefficients=None, **more):
+def column(d=1.0, draught=20.0, top=10.0, x=0.0, coefficients=None, **options):
     """One heavy column upright in the water; coefficients Ca_t, Ca_z, Cd_t, Cd_z are zero but for those given."""
     zero = dict.fromkeys(("Ca_t", "Ca_z", "Cd_t", "Cd_z"), 0.0)
     return {
         "water": {"density": RHO, "depth": DEPTH, "gravity": G},
         "rigid_body": {"mass": 1e6, "centre_of_mass": [0, 0, 0], "inertia": {"Ixx": 1e8, "Iyy": 1e8, "Izz": 1e8}},
         "members": [
-            {"name": "c", "group": "column", "shape": "circ", "d": d, "rA": [x, 0, -draught], "rB": [x, 0, top]} | more
+            {"name": "c", "group": "column", "shape": "circ", "d": d, "rA": [x, 0, -draught], "rB": [x, 0, top]} | options
         ],
         "coefficients": {"column": zero | (coefficients or {})},
     }
@@ -147,8 +147,8 @@ def test_chunks_of_components_add_up(monkeypatch):
     points, factors = rng.uniform(-20, 2, (3, 7)), [(diffraction(6.0 * waves.k), np.array([1, 4]))]
     whole = waves.kinematics(1.0, points, factors)
     monkeypatch.setattr(reference_waves, "CHUNK", 300)
-    for one, other in zip(waves.kinematics(1.0, points, factors), whole):
-        assert_allclose(one, other, atol=1e-12)
+    for in_chunks, at_once in zip(waves.kinematics(1.0, points, factors), whole):
+        assert_allclose(in_chunks, at_once, atol=1e-12)
 
 
 def test_stretching_profiles():
@@ -210,11 +210,11 @@ def test_headings_turn_the_load():
 
 def test_diffraction_factor():
     ka, modulus, lag = np.array(COEFFICIENTS).T
-    found = diffraction(ka)
-    assert_allclose(np.abs(found), modulus, atol=6e-6)
-    assert_allclose(-np.degrees(np.angle(found)), lag, atol=6e-4)
+    factor = diffraction(ka)
+    assert_allclose(np.abs(factor), modulus, atol=6e-6)
+    assert_allclose(-np.degrees(np.angle(factor)), lag, atol=6e-4)
     assert diffraction(0.0) == pytest.approx(2.0, abs=1e-9)
-    assert_allclose(found, [wall_coefficient(x)[0] for x in ka], rtol=1e-10)
+    assert_allclose(factor, [wall_coefficient(x)[0] for x in ka], rtol=1e-10)
 
 
 def test_diffraction_force():
@@ -231,11 +231,13 @@ def test_diffraction_force():
     plain = WaveModel(column(d=d, x=7.0, coefficients={"Ca_t": 1.5}, maccamy_fuchs=False), waves, 0.5, maccamy_fuchs=True)
     assert_allclose([plain.wave_load(time)[0] for time in t], (2.5 * unit).real, atol=2e-3 * np.abs(unit).max())
     pair = Waves([0.8, 0.8], [0.9, 1.1], depth=30.0, gravity=G, order=2)
-    both, first = (WaveModel(platform, pair, 1.0, maccamy_fuchs=True, diffraction_bound=kept) for kept in (True, False))
+    every_wave, first = (
+        WaveModel(platform, pair, 1.0, maccamy_fuchs=True, diffraction_bound=bound_too) for bound_too in (True, False)
+    )
     lone = WaveModel(platform, Waves([0.8, 0.8], [0.9, 1.1], depth=30.0, gravity=G), 1.0, maccamy_fuchs=True)
     assert first.wave_load(2.0)[0] == pytest.approx(lone.wave_load(2.0)[0])
-    assert_allclose(both.factors[0][0], diffraction(np.hypot(pair.kx, pair.ky) * d / 2))
-    assert abs(both.wave_load(2.0)[0] - first.wave_load(2.0)[0]) > 1e-3 * np.abs(unit).max()
+    assert_allclose(every_wave.factors[0][0], diffraction(np.hypot(pair.kx, pair.ky) * d / 2))
+    assert abs(every_wave.wave_load(2.0)[0] - first.wave_load(2.0)[0]) > 1e-3 * np.abs(unit).max()
 
 
 def test_no_waves_is_still_water_and_the_order_of_the_steps():
@@ -255,8 +257,8 @@ def test_no_waves_is_still_water_and_the_order_of_the_steps():
     )
     exact = march(smooth, q0, v0, 0.0125, 4.0, "rk4")[1][-1]
     for method in ("rk4", "ab4"):
-        one, half = (np.abs(march(smooth, q0, v0, step, 4.0, method)[1][-1] - exact).max() for step in (0.1, 0.05))
-        assert 11 < one / half < 22, method
+        coarse, half = (np.abs(march(smooth, q0, v0, step, 4.0, method)[1][-1] - exact).max() for step in (0.1, 0.05))
+        assert 11 < coarse / half < 22, method
     with pytest.raises(ValueError, match="method"):
         march(smooth, q0, v0, 0.1, 1.0, "heun")
 
@@ -287,16 +289,16 @@ def test_sea_state_against_openfast(name, order):
         points = np.array([[x] * 5, [0.0] * 5, [0.0, -5.0, -10.0, -20.0, -50.0]])
         rows = [waves.kinematics(t, points) for t in table["Time"]]
         velocity, acceleration, pressure = (np.array(part) for part in zip(*rows))
-        found = {"Wave1Elev": np.array([waves.surface(t, x, 0.0)[0] for t in table["Time"]])}
+        series_by_channel = {"Wave1Elev": np.array([waves.surface(t, x, 0.0)[0] for t in table["Time"]])}
         for j in range(5):
-            found |= {
+            series_by_channel |= {
                 f"FVel{j + 1}xi": velocity[:, 0, j],
                 f"FVel{j + 1}zi": velocity[:, 2, j],
                 f"FAcc{j + 1}xi": acceleration[:, 0, j],
                 f"FAcc{j + 1}zi": acceleration[:, 2, j],
                 f"FDynP{j + 1}": RHO * pressure[:, j],
             }
-        for key, series in found.items():
+        for key, series in series_by_channel.items():
             assert np.abs(series - table[key]).max() < 1e-5 * np.abs(table[key]).max(), key
 
 
@@ -359,11 +361,11 @@ def test_fixed_hull_against_openfast(case):
     """Total loads within half a per cent of their deviation; what is left is nodes against strips (fine strips on both
     sides: 0.03 %)."""
     table, static, model = openfast("fixed", case)
-    found = np.array([model.wave_load(t) for t in table["Time"][::8]])
-    found[:, 2] += static
+    loads = np.array([model.wave_load(t) for t in table["Time"][::8]])
+    loads[:, 2] += static
     for dof, channel in ((0, "HydroFxi"), (2, "HydroFzi"), (4, "HydroMyi")):
         series = table[channel][::8]
-        share = np.sqrt(((found[:, dof] - series) ** 2).mean()) / series.std()
+        share = np.sqrt(((loads[:, dof] - series) ** 2).mean()) / series.std()
         print(f"{case} {channel}: {100 * share:.2f} %")
         assert share < 5e-3, channel
 
@@ -373,8 +375,8 @@ def test_the_phase_of_diffraction_matters():
     """With it, surge forces differ from OpenFAST's, which has none, by several per cent."""
     table, _, model = openfast("fixed", "c1mcf", diffraction_phase=True)
     series = table["HydroFxi"][::20]
-    found = [model.wave_load(t)[0] for t in table["Time"][::20]]
-    assert 0.05 < np.sqrt(((found - series) ** 2).mean()) / series.std() < 0.09
+    surge = [model.wave_load(t)[0] for t in table["Time"][::20]]
+    assert 0.05 < np.sqrt(((surge - series) ** 2).mean()) / series.std() < 0.09
 
 
 @pytest.mark.slow

@@ -64,8 +64,8 @@ def test_decays_are_the_reference_models(name, monkeypatch):
     offset[IN_PLANE], rates[IN_PLANE] = release(SEED, name, 2)
     motion = reference.decay(offset, rates, 120.0, tank.STEP, tolerance=1e-6)[1][:, IN_PLANE]
     afloat = [0.0, Tank([setup], [(0, name, None, 0.0, 0.0)]).afloat[0], 0.0]
-    found = simulate([setup], [f"{name}-3"])[0][f"{name}-3"]
-    assert_allclose(found, (motion - afloat) * UNITS, atol=3e-3)
+    record = simulate([setup], [f"{name}-3"])[0][f"{name}-3"]
+    assert_allclose(record, (motion - afloat) * UNITS, atol=3e-3)
 
 
 def test_waves_are_the_reference_models():
@@ -74,19 +74,19 @@ def test_waves_are_the_reference_models():
     free = np.abs(amplitude), omega, 0.0, np.angle(amplitude)
     waves = Waves(*free, order=2, set_down=False, stretching="vertical")
     sea = Sea(bins, amplitude)
-    one = Tank([setup], [(0, "", sea, 3.0, 9.0)])
+    made = Tank([setup], [(0, "", sea, 3.0, 9.0)])
     points = np.array([[-50.3, -10.0, 5.5, 24.0], [0.0] * 4, [-19.0, -0.7, -5.0, 0.4]])
     v, a, p = waves.kinematics(31.4, points)
-    flow = one.water.flow(one.water.at(31.4)[1], np.array([0]), points[[0]], points[[2]])[0]
+    flow = made.water.flow(made.water.at(31.4)[1], np.array([0]), points[[0]], points[[2]])[0]
     assert_allclose(flow[:, :5], np.stack([v[0], v[2], a[0], a[2], p], axis=1), atol=2e-3)
     level = sea.series(sea.elevation(points[0]), np.array([31.4]))[0]
     assert_allclose(level, waves.surface(31.4, *points[:2]), atol=1e-12)
-    y = one.at_rest()
+    y = made.at_rest()
     start = np.zeros(6)
     start[IN_PLANE] = y[0, :3]
     model = WaveModel(true_platform(setup), waves, 0.5, 2.0, maccamy_fuchs=True, pontoon_ends=True)
     motion = march(model, start, np.zeros(6), tank.STEP, 60.0)[1][:, IN_PLANE]
-    difference = np.abs(one.march(y, 60.0)[0] - motion).max(axis=0)
+    difference = np.abs(made.march(y, 60.0)[0] - motion).max(axis=0)
     assert (difference < 0.01 * motion.std(axis=0)).all()
 
 
@@ -101,11 +101,11 @@ def test_rests_and_keeps_its_energy():
     for setup in tanks:
         for k, (name, variant, p) in enumerate(setup.effects):
             setup.effects[k] = name, variant, p | ({"damping": 0.0} if name == "hidden_oscillator" else {})
-    one = Tank(tanks, [(c, "heave", None, 0.0, 0.0) for c in range(len(tanks))])
-    y = one.at_rest()
-    assert np.abs(one.rate(0.0, y)[:, 3:6]).max() < 1e-10
+    all_tanks = Tank(tanks, [(c, "heave", None, 0.0, 0.0) for c in range(len(tanks))])
+    y = all_tanks.at_rest()
+    assert np.abs(all_tanks.rate(0.0, y)[:, 3:6]).max() < 1e-10
     y[:, 1] += 3.0
-    heave = one.march(y, 200.0)[..., 1] - one.equilibrium[:, None, 1]
+    heave = all_tanks.march(y, 200.0)[..., 1] - all_tanks.equilibrium[:, None, 1]
     crests = [x[1:-1][(x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:])] for x in heave]
     for crest in crests:  # a sample is at most 0.05 % below its crest
         assert len(crest) >= 9
@@ -158,8 +158,8 @@ def test_looks_like_the_shared_campaigns(tmp_path):
         for j in range(2 if name == "sea" else 3):
             records[f"{name}-{j + 1}"] = np.zeros((round(length / tank.STEP) + 1, 4 if name == "sea" else 3))
     tank.write(Setup(Spec(seed=101)), records, tmp_path)
-    theirs, ours = read(SHARED / "campaign.yaml"), read(tmp_path / "campaign.yaml")
-    assert theirs == ours
+    shared, ours = read(SHARED / "campaign.yaml"), read(tmp_path / "campaign.yaml")
+    assert shared == ours
     assert read(SHARED / "platform.yaml") == read(tmp_path / "platform.yaml")
     for test in ours["tests"]:
         their_lines, our_lines = ((folder / test["file"]).read_text().splitlines() for folder in (SHARED, tmp_path))
@@ -213,18 +213,18 @@ CHANGES = {
 
 def parts(records) -> dict:
     """Channels by the names in CHANGES, in units of the noise."""
-    found = {name: records[f"{name}-2"][:, j] / tank.NOISE[name] for j, name in enumerate(tank.CHANNELS)}
-    found["pitch_surge"] = records["pitch-2"][:, 0] / tank.NOISE["surge"]
-    found["sea"] = records["sea-2"][:, :3] / [tank.NOISE[name] for name in tank.CHANNELS]
-    return found | {"wave": records["sea-2"][:, 3] / tank.NOISE["wave"]}
+    scaled = {name: records[f"{name}-2"][:, j] / tank.NOISE[name] for j, name in enumerate(tank.CHANNELS)}
+    scaled["pitch_surge"] = records["pitch-2"][:, 0] / tank.NOISE["surge"]
+    scaled["sea"] = records["sea-2"][:, :3] / [tank.NOISE[name] for name in tank.CHANNELS]
+    return scaled | {"wave": records["sea-2"][:, 3] / tank.NOISE["wave"]}
 
 
 @pytest.mark.slow
 def test_every_effect_acts_where_it_should(short):
-    every = {
+    effects = {
         f"{name}:{variant}" if variant else name for name, law in tank_effects.EFFECTS.items() for variant in law.variants()
     }
-    assert every == set(CHANGES)
+    assert effects == set(CHANGES)
     records = simulate(
         [Setup(Spec(effect=effect, strength=2, seed=SEED)) for effect in (None, *CHANGES)],
         ["surge-2", "heave-2", "pitch-2", "sea-2"],

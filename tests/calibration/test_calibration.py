@@ -70,7 +70,7 @@ def model_of(document: dict, values: dict[str, float] | None = None) -> jh.Model
     return jh.build(jh.Platform.model_validate(document)).with_values(values or {})
 
 
-def write(folder: Path, platform: dict | str, tests: dict, scale: float = 1.0, **more) -> Path:
+def write(folder: Path, platform: dict | str, tests: dict, scale: float = 1.0, **options) -> Path:
     """A campaign of SI full-scale records, test id -> (test's keys, time, channel -> values), stored at its own scale."""
     folder.mkdir(parents=True, exist_ok=True)
     yaml, entries, channels = YAML(typ="safe"), [], {}
@@ -92,7 +92,7 @@ def write(folder: Path, platform: dict | str, tests: dict, scale: float = 1.0, *
             yaml.dump(platform, file)
         platform = "platform.yaml"
     channels["time"] = {"column": "time", "unit": "s"}
-    manifest = {"name": "made", "platform": platform, "scale": scale, "channels": channels, "tests": entries, **more}
+    manifest = {"name": "made", "platform": platform, "scale": scale, "channels": channels, "tests": entries, **options}
     with open(folder / "campaign.yaml", "w") as file:
         yaml.dump(manifest, file)
     return folder
@@ -128,8 +128,8 @@ def ship_campaign(ship_folder: Path) -> Campaign:
 @pytest.fixture(scope="module")
 def ship(ship_campaign: Campaign) -> tuple[Calibration, list[Progress]]:
     """The ship's calibration and what it reported."""
-    said: list[Progress] = []
-    return calibrate(ship_campaign, progress=said.append), said
+    reports: list[Progress] = []
+    return calibrate(ship_campaign, progress=reports.append), reports
 
 
 def posed(campaign: Campaign, labels: tuple[str, ...] | None = None) -> tuple[DecayProblem, tuple]:
@@ -274,8 +274,8 @@ def test_normal_equations_are_those_of_the_plain_residuals(ship_campaign: Campai
         return jnp.concatenate([(jnp.sqrt(weight)[..., None] * r).ravel(), ridge * (z[:p] - mean)])
 
     z = jnp.concatenate([unknowns.shared, unknowns.own.ravel()])
-    both = jax.jit(jax.jacfwd(lambda z: (plain(z),) * 2, has_aux=True))
-    slope, r = both(z)
+    value_and_slope = jax.jit(jax.jacfwd(lambda z: (plain(z),) * 2, has_aux=True))
+    slope, r = value_and_slope(z)
     fit = LeastSquares((problem.up_to(until),), (weight,), mean, ridge)
     equations, (products,) = jax.jit(normal_equations)(unknowns, fit)
     assert float(equations.f) == pytest.approx(0.5 * float(r @ r), rel=1e-9)
@@ -289,7 +289,7 @@ def test_normal_equations_are_those_of_the_plain_residuals(ship_campaign: Campai
     np.testing.assert_allclose(np.concatenate([step.shared, step.own.ravel()]), expected, rtol=1e-8, atol=1e-12)
     h = 1e-5
     for i in range(len(z)):
-        column = (both(z.at[i].add(h))[1] - both(z.at[i].add(-h))[1]) / (2 * h)
+        column = (value_and_slope(z.at[i].add(h))[1] - value_and_slope(z.at[i].add(-h))[1]) / (2 * h)
         np.testing.assert_allclose(column, slope[:, i], atol=1e-6 * np.abs(slope).max())
 
 
@@ -344,11 +344,11 @@ def test_spread_is_the_covariance_of_a_linear_regression() -> None:
     np.testing.assert_allclose(best.covariance, np.linalg.inv(full.T @ (full / noise[:, None])), rtol=1e-8)
     # weighed otherwise: the sandwich, here with every fourth sample counting
     bread = np.linalg.inv(full.T @ full)
-    other = sandwich_covariance(products, np.ones((2, 1)), sigma**2, np.full((2, 1), 4.0), ridge, np.ones(2))
+    inflated = sandwich_covariance(products, np.ones((2, 1)), sigma**2, np.full((2, 1), 4.0), ridge, np.ones(2))
     expected = 4 * bread @ (full.T @ (full * noise[:, None])) @ bread
-    np.testing.assert_allclose(other.covariance, expected, rtol=1e-8)
-    np.testing.assert_allclose(other.deviation(), np.sqrt(np.diag(expected)[:2]), rtol=1e-8)
-    assert np.diag(other.correlation()) == pytest.approx([1.0, 1.0])
+    np.testing.assert_allclose(inflated.covariance, expected, rtol=1e-8)
+    np.testing.assert_allclose(inflated.deviation(), np.sqrt(np.diag(expected)[:2]), rtol=1e-8)
+    assert np.diag(inflated.correlation()) == pytest.approx([1.0, 1.0])
 
 
 def test_what_no_record_touches_is_as_wide_as_its_prior() -> None:
@@ -408,12 +408,12 @@ def test_held_out_records_are_judged_with_the_fitted_coefficients(ship, ship_cam
 
 @pytest.mark.slow
 def test_progress_is_reported_iteration_by_iteration(ship) -> None:
-    result, said = ship
-    assert [p.iteration for p in said] == list(range(1, result.iterations + 1))
-    assert [p.objective for p in said] == list(result.history)
-    assert all(0 <= p.fraction <= 1 and p.stage for p in said)
-    assert said[-1].objective == pytest.approx(result.objective("fit"), rel=1e-3)
-    assert said[-1].objective < 0.1 * said[0].objective
+    result, reports = ship
+    assert [p.iteration for p in reports] == list(range(1, result.iterations + 1))
+    assert [p.objective for p in reports] == list(result.history)
+    assert all(0 <= p.fraction <= 1 and p.stage for p in reports)
+    assert reports[-1].objective == pytest.approx(result.objective("fit"), rel=1e-3)
+    assert reports[-1].objective < 0.1 * reports[0].objective
 
 
 @pytest.mark.slow
@@ -483,10 +483,10 @@ def test_a_model_that_is_too_stiff_arrives(tmp_path: Path) -> None:
 def heave_tests() -> dict:
     """A zero test and a noisy heave decay; the sensor reads -1.3 m in still water."""
     random, model = np.random.default_rng(5), model_of(semi(), SEMI_TRUE)
-    rest = float(jh.equilibrium(model)[2])
-    assert abs(rest) > 0.1
+    mean_heave = float(jh.equilibrium(model)[2])
+    assert abs(mean_heave) > 0.1
     time = np.arange(0.0, 160.0, 0.5)
-    heave = np.asarray(jh.free_decay(model, {"heave": 2.5}, time)["heave"]) - rest
+    heave = np.asarray(jh.free_decay(model, {"heave": 2.5}, time)["heave"]) - mean_heave
 
     def read(x):
         return x - 1.3 + SEMI_NOISE * random.standard_normal(len(x))
@@ -541,10 +541,10 @@ def test_a_standard_deviation_is_given_where_identifiable(heave, ship) -> None:
 def test_froude_scaled_records_give_the_same_coefficients(heave) -> None:
     full, scaled = heave
     for label, parameter in full.parameters.items():
-        other = scaled.parameters[label]
-        assert other.value == pytest.approx(parameter.value, rel=1e-5)
+        scaled_parameter = scaled.parameters[label]
+        assert scaled_parameter.value == pytest.approx(parameter.value, rel=1e-5)
         if parameter.identifiable:
-            assert other.standard_deviation == pytest.approx(parameter.standard_deviation, rel=1e-3)
+            assert scaled_parameter.standard_deviation == pytest.approx(parameter.standard_deviation, rel=1e-3)
     assert scaled.objective("fit") == pytest.approx(full.objective("fit"), rel=1e-6)
     np.testing.assert_allclose(scaled.tests[0].time, full.tests[0].time, atol=1e-9)
 

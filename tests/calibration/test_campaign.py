@@ -67,9 +67,9 @@ def manifest(**changes):
     }
 
 
-def table(t=T, x=SURGE, p=PITCH, header="t,x,p", **more):
-    columns = [t, x, p, *more.values()]
-    names = [header, *more]
+def table(t=T, x=SURGE, p=PITCH, header="t,x,p", **columns_beside):
+    columns = [t, x, p, *columns_beside.values()]
+    names = [header, *columns_beside]
     return "\n".join([",".join(names), *(",".join(f"{value:.5f}" for value in row) for row in zip(*columns))]) + "\n"
 
 
@@ -317,8 +317,8 @@ def test_text_in_a_column_that_nobody_uses_is_no_mistake(tmp_path):
     np.testing.assert_allclose(records(folder)["d-1"].values["surge"], SURGE, atol=1e-4)
     rows[7] = rows[7].replace(",", ",off", 1)
     (folder / document["tests"][0]["file"]).write_text("\n".join(["t,x,p,force", *rows]))
-    said = failure(records, folder)
-    assert "d.csv, row 9, column x: expected a number, found 'off" in said and "force" not in said
+    message = failure(records, folder)
+    assert "d.csv, row 9, column x: expected a number, found 'off" in message and "force" not in message
 
 
 def test_files_that_are_not_there(tmp_path):
@@ -374,8 +374,8 @@ def test_a_sea_of_few_waves_is_told(tmp_path):
     sea = {"id": "sea", "kind": "irregular", "file": "d.csv", "window": [0.0, 39.0], "transient": 9.0}
     document["tests"] = [sea]
     content = {"d.csv": table(w=np.cos(2 * np.pi * T / 2) + 0.2 * np.cos(2 * np.pi * T / 2.5))}
-    said = [message for message in messages(write(tmp_path, document, content)) if "too few" in message]
-    assert len(said) == 1 and "only 30 s after the transient, 15" in said[0]
+    few_waves = [message for message in messages(write(tmp_path, document, content)) if "too few" in message]
+    assert len(few_waves) == 1 and "only 30 s after the transient, 15" in few_waves[0]
     sea["transient"] = 0.0
     content["d.csv"] = table(w=np.cos(2 * np.pi * T / 1.2) + 0.2 * np.cos(2 * np.pi * T / 1.5))
     assert not any("too few" in message for message in messages(write(tmp_path, document, content)))
@@ -527,10 +527,10 @@ def test_warnings(tmp_path, csv, words):
 def test_what_is_held_out_is_not_fitted_too(tmp_path):
     """The same samples for both: said; another part of the file is another record."""
     decay = {"kind": "decay", "degree_of_freedom": "surge", "file": "d.csv"}
-    for window, said in ([0, 20], True), ([20, 40], False):
+    for window, expected in ([0, 20], True), ([20, 40], False):
         tests = [{"id": "a", "window": [0, 20], **decay}, {"id": "b", "use": "holdout", "window": window, **decay}]
-        found = messages(write(tmp_path, manifest(tests=tests)))
-        assert any("held out, and the fitted test a has samples of it" in message for message in found) == said
+        warnings = messages(write(tmp_path, manifest(tests=tests)))
+        assert any("held out, and the fitted test a has samples of it" in message for message in warnings) == expected
 
 
 @pytest.mark.parametrize(
@@ -549,8 +549,8 @@ def test_no_false_alarm(tmp_path, csv):
 
 def test_a_gap_is_no_spike(tmp_path):
     """A signal goes on elsewhere after one: that is said once."""
-    said = messages(write(tmp_path, files={"d.csv": spoilt(x={(50, 64): np.nan})}))
-    assert len(said) == 2 and "14 values missing" in said[1] and "a gap of" in said[0]
+    warnings = messages(write(tmp_path, files={"d.csv": spoilt(x={(50, 64): np.nan})}))
+    assert len(warnings) == 2 and "14 values missing" in warnings[1] and "a gap of" in warnings[0]
 
 
 def change(document, path, value):
@@ -709,8 +709,8 @@ def test_waves_that_are_not_in_the_file_and_zero_tests_without_a_channel(tmp_pat
     document["tests"][0] |= {"kind": "irregular"}
     assert "channel wave of test d-1: expected a column 'w'" in failure(load_campaign, write(tmp_path, document))
     wave = np.cos(2 * np.pi * T / 1.8)
-    said = messages(write(tmp_path, document, {"d.csv": table(w=wave)}))
-    assert "the waves have begun before the record" in said[0] and "wave_channel has no position" in said[1]
+    warnings = messages(write(tmp_path, document, {"d.csv": table(w=wave)}))
+    assert "the waves have begun before the record" in warnings[0] and "wave_channel has no position" in warnings[1]
     document = manifest(zero={"test": "d-2"})
     document["tests"].append({**D2, "channels": {"surge": None}})
     assert "expected a channel that the zero test has too" in failure(load_campaign, write(tmp_path, document))
@@ -748,11 +748,11 @@ FULL["tests"] = [
 SHORT = "\n".join(table(w=np.cos(2 * np.pi * T / 3)).split("\n")[:202])
 
 
-def paths(document, here=()):
+def paths(document, prefix=()):
     nested = isinstance(document, dict | list)
     for key, value in document.items() if isinstance(document, dict) else enumerate(document) if nested else ():
-        yield (*here, key)
-        yield from paths(value, (*here, key))
+        yield (*prefix, key)
+        yield from paths(value, (*prefix, key))
 
 
 odd = st.one_of(

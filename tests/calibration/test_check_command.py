@@ -29,11 +29,11 @@ def demo():
 
 
 def test_periods_are_those_of_the_records(demo):
-    found = {one.motion: one for one in compare_periods(demo.records, natural_modes(demo.model))}
-    assert {name: one.tests for name, one in found.items()} == {"surge": 3, "heave": 3, "pitch": 3}
+    by_motion = {comparison.motion: comparison for comparison in compare_periods(demo.records, natural_modes(demo.model))}
+    assert {name: comparison.tests for name, comparison in by_motion.items()} == {"surge": 3, "heave": 3, "pitch": 3}
     # the records were made with periods of 133, 18.8 and 26.4 s
-    np.testing.assert_allclose([found[name].measured for name in ("surge", "heave", "pitch")], [133, 18.8, 26.4], rtol=0.02)
-    assert all(abs(one.difference) < 0.05 for one in found.values())
+    np.testing.assert_allclose([by_motion[name].measured for name in ("surge", "heave", "pitch")], [133, 18.8, 26.4], rtol=0.02)
+    assert all(abs(comparison.difference) < 0.05 for comparison in by_motion.values())
 
 
 def test_a_sound_campaign_is_said_to_be_sound(demo):
@@ -43,8 +43,8 @@ def test_a_sound_campaign_is_said_to_be_sound(demo):
 
 
 def test_a_period_far_off_is_named(demo):
-    said = list(doubts(demo, [PeriodComparison("pitch", 3, 26.4, 37.0), PeriodComparison("heave", 3, 18.8, 18.1)]))
-    assert len(said) == 1 and said[0].startswith("pitch: the model's natural period is 37.0 s, measured 26.4 s")
+    sentences = list(doubts(demo, [PeriodComparison("pitch", 3, 26.4, 37.0), PeriodComparison("heave", 3, 18.8, 18.1)]))
+    assert len(sentences) == 1 and sentences[0].startswith("pitch: the model's natural period is 37.0 s, measured 26.4 s")
     assert "no natural period" in next(doubts(demo, [PeriodComparison("sway", 1, 130.0, math.nan)]))
 
 
@@ -88,8 +88,8 @@ def test_an_unstable_platform_is_refused(tmp_path, command):
     assert "centre_of_mass: [0.0, 0.0, -2.4]" in text
     (folder / "platform.yaml").write_text(text.replace("[0.0, 0.0, -2.4]", "[0.0, 0.0, 40.0]"))
     result = RUNNER.invoke(cli.app, [command, str(folder), "--out", str(tmp_path / "out")], env={"COLUMNS": "160"})
-    said = " ".join(result.output.split())
-    assert result.exit_code == 2 and "the platform is unstable in roll and pitch" in said, said
+    output = " ".join(result.output.split())
+    assert result.exit_code == 2 and "the platform is unstable in roll and pitch" in output, output
     assert not (tmp_path / "out").exists()
 
 
@@ -120,8 +120,8 @@ def test_command_refuses_to_free_what_the_platform_does_not_have(tmp_path):
     assert "free: [pontoon.Ca_z" in text
     (folder / "campaign.yaml").write_text(text.replace("free: [pontoon.Ca_z", "free: [pontoon.Ca_x"))
     result = RUNNER.invoke(cli.app, ["check", str(folder), "--out", str(tmp_path / "out")], env={"COLUMNS": "160"})
-    said = " ".join(result.output.split())
-    assert result.exit_code == 2 and "calibrate.free: expected a parameter of this platform" in said, said
+    output = " ".join(result.output.split())
+    assert result.exit_code == 2 and "calibrate.free: expected a parameter of this platform" in output, output
     assert not (tmp_path / "out").exists()
 
 

@@ -41,8 +41,8 @@ def test_a_period_that_changes_with_the_amplitude_is_noticed():
     assert change.large - change.small > 0.02 > abs(change.simulated_large - change.simulated_small)
     assert unexplained_period_change(TIMES, noisy, pendulum, 2e-4) is None
     fit = TestFit("d", "fit", "decay", "roll", TIMES, (Series("roll", noisy, linear, 0.0, 2e-4, True),), {}, "d.csv")
-    said = period_remarks([fit])
-    assert len(said) == 1 and said[0].startswith("d: the period of roll goes from") and "jaxhydro diagnose" in said[0]
+    remarks = period_remarks([fit])
+    assert len(remarks) == 1 and remarks[0].startswith("d: the period of roll goes from") and "jaxhydro diagnose" in remarks[0]
 
 
 def linear_decay(zeta: float, times: np.ndarray = TIMES) -> np.ndarray:
@@ -116,11 +116,11 @@ def test_sides_apart_show_a_wrong_zero() -> None:
 @pytest.mark.parametrize(("p", "q"), [(0.0, 0.02), (0.004, 0.01), (0.02, 0.03)])
 def test_linear_and_quadratic_damping_of_a_solution(p: float, q: float) -> None:
     """Half-cycle decrements up to 0.25: q within 0.5 %, p within 2e-4 w; over whole cycles within 2.5 % and 8e-4 w."""
-    found = fitted(p, q)
-    assert found.half_cycles.decrement.max() / 2 < 0.25
-    assert found.fit.quadratic.value == pytest.approx(q, rel=5e-3)
-    assert found.fit.linear.value == pytest.approx(p, abs=2e-4 * OMEGA)
-    for fit in (found.positive_fit, found.negative_fit):
+    analysis = fitted(p, q)
+    assert analysis.half_cycles.decrement.max() / 2 < 0.25
+    assert analysis.fit.quadratic.value == pytest.approx(q, rel=5e-3)
+    assert analysis.fit.linear.value == pytest.approx(p, abs=2e-4 * OMEGA)
+    for fit in (analysis.positive_fit, analysis.negative_fit):
         assert fit is not None and fit.quadratic.value == pytest.approx(q, rel=2.5e-2)
         assert fit.linear.value == pytest.approx(p, abs=8e-4 * OMEGA)
 

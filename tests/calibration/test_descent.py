@@ -21,24 +21,24 @@ TIME = np.linspace(0.0, 20.0, SAMPLES)
 class Oscillations(Study):
     """Three records, the last held out: x = a exp(-z t) cos(w t) + offset, w and z shared, a and offset each record's own."""
 
-    def values(self, place: Point) -> np.ndarray:
-        rate, decay = place.x
-        return np.stack([a * np.exp(-decay * TIME) * np.cos(rate * TIME) + offset for a, offset in place.own])
+    def values(self, point: Point) -> np.ndarray:
+        rate, decay = point.x
+        return np.stack([a * np.exp(-decay * TIME) * np.cos(rate * TIME) + offset for a, offset in point.own])
 
-    def residual(self, place: Point, seas="fit") -> np.ndarray:
-        return self.cuts[0](self.values(place) - self.measured)
+    def residual(self, point: Point, seas="fit") -> np.ndarray:
+        return self.cuts[0](self.values(point) - self.measured)
 
-    def linearise(self, place: Point, active) -> Linearisation:
-        self.linearisations.append(place)
+    def linearise(self, point: Point, active) -> Linearisation:
+        self.linearisations.append(point)
         steps = 1e-6 * np.eye(4)
 
         def slope(x, own):
-            ahead, behind = (self.residual(Point(place.x + s * x, place.own + s * own)) for s in (1, -1))
+            ahead, behind = (self.residual(Point(point.x + s * x, point.own + s * own)) for s in (1, -1))
             return (ahead - behind) / 2e-6
 
-        slopes = np.stack([slope(one[:2], 0) for one in steps[:2]], axis=1)[:, list(active)]
-        own = np.stack([slope(0, one[2:]) for one in steps[2:]], axis=1)
-        return Linearisation(place, tuple(active), self.residual(place), slopes, own)
+        slopes = np.stack([slope(one_step[:2], 0) for one_step in steps[:2]], axis=1)[:, list(active)]
+        own = np.stack([slope(0, one_step[2:]) for one_step in steps[2:]], axis=1)
+        return Linearisation(point, tuple(active), self.residual(point), slopes, own)
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def study():
     )
     free = tuple(SimpleNamespace(label=name, transform=None) for name in ("rate", "decay"))
     space = SimpleNamespace(labels=("rate", "decay"), start=jnp.array([1.0, 0.1]), free=free)
-    found = Oscillations(
+    oscillations = Oscillations(
         space,
         None,
         ("rate", "decay"),
@@ -67,9 +67,9 @@ def study():
         None,
     )
     truth = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
-    object.__setattr__(found, "linearisations", [])
-    object.__setattr__(found, "measured", found.values(truth) + noise)
-    return found
+    object.__setattr__(oscillations, "linearisations", [])
+    object.__setattr__(oscillations, "measured", oscillations.values(truth) + noise)
+    return oscillations
 
 
 PRIOR = Prior(np.zeros(2), np.full(2, 10.0))
@@ -80,8 +80,8 @@ def best(study: Study, begin: Point) -> np.ndarray:
     linearisation = study.linearise(begin, (0, 1))
 
     def cost(z):
-        place = Point(z[:2], np.vstack([z[2:].reshape(2, 2), begin.own[2:]]))
-        return cost_of(study, linearisation, study.residual(place), place, study.used, PRIOR)
+        point = Point(z[:2], np.vstack([z[2:].reshape(2, 2), begin.own[2:]]))
+        return cost_of(study, linearisation, study.residual(point), point, study.used, PRIOR)
 
     start = np.concatenate([begin.x, begin.own[:2].ravel()])
     return minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-8, "fatol": 1e-10, "maxiter": 8000}).x
@@ -111,8 +111,8 @@ def test_a_fit_stays_where_its_parameters_make_sense(study):
     linearisation = study.linearise(begin, (0, 1))
 
     def cost(z):
-        place = Point(np.array([z[0], 0.08]), np.vstack([z[1:].reshape(2, 2), begin.own[2:]]))
-        return cost_of(study, linearisation, study.residual(place), place, study.used, PRIOR)
+        point = Point(np.array([z[0], 0.08]), np.vstack([z[1:].reshape(2, 2), begin.own[2:]]))
+        return cost_of(study, linearisation, study.residual(point), point, study.used, PRIOR)
 
     options = {"xatol": 1e-8, "fatol": 1e-10, "maxiter": 8000}
     expected = minimize(cost, [1.25, *begin.own[:2].ravel()], method="Nelder-Mead", options=options).x
@@ -135,9 +135,9 @@ def test_mended_slopes_give_the_step_that_was_taken(study):
     begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
     linearisation = study.linearise(begin, (0, 1))
     step, own = np.array([0.03, -0.02]), np.array([[0.1, 0.05], [0.2, -0.1], [0.0, 0.0]])
-    there = begin.moved(study.directions, step, own)
-    residual = study.residual(there)
-    after = broyden_update(study, linearisation, there, residual, step, own)
+    moved = begin.moved(study.directions, step, own)
+    residual = study.residual(moved)
+    after = broyden_update(study, linearisation, moved, residual, step, own)
     assert_allclose(linear_residual(study, after, -step, -own), linearisation.residual, atol=1e-10)
 
 
@@ -145,8 +145,8 @@ def test_a_prediction_is_exact_where_the_model_is_linear(study):
     """Along the own unknowns alone the model is linear: what is predicted is what a fit gains, held-out tests too."""
     begin = Point(np.array([1.3, 0.06]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.1]]))
     linearisation = study.linearise(begin, ())
-    found = predict_gain(study, linearisation, PRIOR)
-    for used, gain in ((study.used, found.fitted), (~study.used, found.held)):
+    predicted = predict_gain(study, linearisation, PRIOR)
+    for used, gain in ((study.used, predicted.fitted), (~study.used, predicted.held)):
         reached = fit(study, linearisation, used, PRIOR, iterations=20, tolerance=1e-9)
         now = minus_two_log_likelihood(study, linearisation.residual) - minus_two_log_likelihood(
             study, reached.linearisation.residual
@@ -173,7 +173,7 @@ def test_a_fit_is_converged_to_the_tolerance_of_where_it_ends(study, far):
     near = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
     expected = best(study, near)
     z = np.concatenate([reached.linearisation.point.x, reached.linearisation.point.own[:2].ravel()])
-    place = Point(expected[:2], np.vstack([expected[2:].reshape(2, 2), begin.own[2:]]))
-    least = cost_of(study, reached.linearisation, study.residual(place), place, study.used, PRIOR)
+    point = Point(expected[:2], np.vstack([expected[2:].reshape(2, 2), begin.own[2:]]))
+    least = cost_of(study, reached.linearisation, study.residual(point), point, study.used, PRIOR)
     assert reached.settled and costs[-1] - least < 2 * MIN_RELATIVE_GAIN * abs(least)
     assert_allclose(z, expected, atol=2e-3)

@@ -64,15 +64,15 @@ def test_the_document_says_what_the_contract_says(result: Diagnosis, written: Pa
     assert (effect["effect"], effect["degree_of_freedom"]) == ("coulomb_friction", "surge")
     force = effect["parameters"]["force"]
     assert (force["value"], force["standard_deviation"], force["unit"]) == (81000.0, 2100.0, "N")
-    known = {"score": 812.0, "delta_bic": 604.0, "holdout_gain": 0.61, "clear": 38.6}
-    assert effect["evidence"] == known | {"probability": 0.97, "left_out": 512.0, "left_out_better": 0.75}
+    numbers = {"score": 812.0, "delta_bic": 604.0, "holdout_gain": 0.61, "clear": 38.6}
+    assert effect["evidence"] == numbers | {"probability": 0.97, "left_out": 512.0, "left_out_better": 0.75}
     assert effect["share_of_residual_explained"] == 0.93 and effect["indistinguishable_from"] == ["hysteresis (surge)"]
     reason = "the squared error of the held-out tests grows by 2 %"
     assert missing["rejected"][0] == {"effect": "current", "degree_of_freedom": None, "reason": reason}
     assert FORCE in read["augmented"]["parameters"] and FORCE not in read["baseline"]["parameters"]
-    for key, one in (("baseline", result.baseline), ("augmented", result.augmented)):
-        assert read[key]["objective"]["fit"] == pytest.approx(one.objective("fit")) and read[key]["converged"] is True
-        low = one.tests[4].bands["surge"]["low_frequency"]
+    for key, fitted in (("baseline", result.baseline), ("augmented", result.augmented)):
+        assert read[key]["objective"]["fit"] == pytest.approx(fitted.objective("fit")) and read[key]["converged"] is True
+        low = fitted.tests[4].bands["surge"]["low_frequency"]
         assert read[key]["error"]["sea-1"]["bands"]["surge"]["low_frequency"] == low.after
     first = read["augmented"]["error"]["pitch-1"]["pitch"]
     assert first["unit"] == "deg" and first["before"] == pytest.approx(
@@ -88,11 +88,11 @@ def test_the_series_before_have_the_residual_they_had(result: Diagnosis, written
     """Sensor offsets differ between the two fits: what is measured is on the later one's."""
     with xr.open_dataset(written / "simulated.nc") as data:
         for before, after in zip(result.baseline.tests, result.augmented.tests):
-            here = data.sel(test=after.id, channel=after.main.channel)
+            of_test = data.sel(test=after.id, channel=after.main.channel)
             n, factor = len(after.time), 180 / np.pi if after.main.channel == "pitch" else 1.0
-            np.testing.assert_allclose(here.simulated[:n], factor * after.main.simulated, atol=1e-12)
-            left = factor * (before.main.measured - before.main.simulated)
-            np.testing.assert_allclose(here.measured[:n] - here.before[:n], left, atol=1e-12)
+            np.testing.assert_allclose(of_test.simulated[:n], factor * after.main.simulated, atol=1e-12)
+            residual = factor * (before.main.measured - before.main.simulated)
+            np.testing.assert_allclose(of_test.measured[:n] - of_test.before[:n], residual, atol=1e-12)
         assert data.attrs["title"] == "Diagnosis of basin" and "baseline" in data.before.attrs["long_name"]
     test = result.baseline.tests[0]
     short = replace(test, series=tuple(replace(s, measured=s.measured[1:], simulated=s.simulated[1:]) for s in test.series))
@@ -121,18 +121,18 @@ def test_every_figure_is_half_a_page_wide_and_named_in_the_document(written: Pat
 def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> None:
     """In the verdict, beside the effect, and in the file; all of them, or one beside another that is sure."""
     doubtful = replace(result.effects[0], indistinguishable=(), in_doubt="amplitude_dependent_drag")
-    other = replace(result.effects[0], effect="current", degree_of_freedom=None, indistinguishable=())
+    current = replace(result.effects[0], effect="current", degree_of_freedom=None, indistinguishable=())
     for effects, verdict, start in (
         ((doubtful,), "unexplained", "The model lacks something, and no effect"),
-        ((other, doubtful), "found", "The model lacks a current. "),
+        ((current, doubtful), "found", "The model lacks a current. "),
     ):
         write_diagnosis(replace(result, verdict=verdict, effects=effects), tmp_path / verdict, figures=False)
         saved = read_diagnosis(tmp_path / verdict)
         assert words.verdict_sentence(saved).startswith(start)
         assert " Coulomb friction in surge may stand for " in words.verdict_sentence(saved)
-        said = words.describe_alternatives(saved.missing.effects[-1])
-        assert said.startswith("Amplitude dependent drag explains more of the fitted tests beside it than it does, and is")
-        assert said in Page(write_report(tmp_path / verdict).read_text()).text
+        sentence = words.describe_alternatives(saved.missing.effects[-1])
+        assert sentence.startswith("Amplitude dependent drag explains more of the fitted tests beside it than it does, and is")
+        assert sentence in Page(write_report(tmp_path / verdict).read_text()).text
         raising = saved.missing.effects[-1].model_copy(update={"in_doubt": "held_out_error"})
         assert words.describe_alternatives(raising).startswith("With all that was found in the model, the tests that were not")
         lacking = saved.missing.effects[-1].model_copy(update={"in_doubt": "wave_order"})
@@ -140,7 +140,7 @@ def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> 
         unordered = saved.missing.model_copy(update={"effects": [*saved.missing.effects[:-1], lacking]})
         verdict = words.verdict_sentence(saved.model_copy(update={"missing": unordered}))
         assert verdict == f"{words.WAVES_FIRST} {words.verdict_sentence(saved)}"
-        if other in effects:
+        if current in effects:
             assert words.describe_alternatives(saved.missing.effects[0]).startswith(
                 "No other effect that was tried does as well."
             )
@@ -166,11 +166,11 @@ def test_the_terminal_tells_each_effect_in_three_lines(written: Path, capsys: py
     """Name and size; how sure; what else it could be."""
     saved = read_diagnosis(written)
     show_diagnosis(saved, [])
-    said = capsys.readouterr().out.splitlines()
-    for one in saved.missing.effects:
-        lines = words.effect_in_three_lines(saved, one)
-        at = said.index(lines[0])
-        assert [line for line in said[at : at + 3]] == list(lines)
+    lines_printed = capsys.readouterr().out.splitlines()
+    for effect in saved.missing.effects:
+        lines = words.effect_in_three_lines(saved, effect)
+        at = lines_printed.index(lines[0])
+        assert [line for line in lines_printed[at : at + 3]] == list(lines)
     first = words.effect_in_three_lines(saved, saved.missing.effects[0])
     assert first[0].startswith("Coulomb friction in surge: force (81.0 ± ") and first[0].endswith(" kN")
     assert first[1].startswith("  How sure: probability ") and "squared error of held-out tests falls by 61 %" in first[1]
@@ -209,14 +209,14 @@ def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_pa
     stopped = nothing(verdict="unexplained", scores=result.scores[:1], augmented=replace(result.augmented, converged=False))
     write_diagnosis(stopped, tmp_path / "stopped")
     assert "did not come to its end" in Page(write_report(tmp_path / "stopped").read_text()).text
-    quiet = replace(stopped, scores=tuple(replace(one, gain=0.5, refitted=None) for one in result.scores))
+    quiet = replace(stopped, scores=tuple(replace(score, gain=0.5, refitted=None) for score in result.scores))
     write_diagnosis(quiet, tmp_path / "quiet")
     assert (tmp_path / "stopped" / "figures" / "scores.png").exists()
     assert not (tmp_path / "quiet" / "figures" / "scores.png").exists()
-    one = result.effects[0]
-    unsure = replace(one.evidence, score=np.nan, delta_bic=np.inf, holdout_gain=np.nan, clear=np.nan)
-    other = replace(one, effect="new", degree_of_freedom="yaw", parameters={}, telling_test=None)
-    twice = (one, replace(one, evidence=unsure), other)
+    friction = result.effects[0]
+    unsure = replace(friction.evidence, score=np.nan, delta_bic=np.inf, holdout_gain=np.nan, clear=np.nan)
+    unnamed = replace(friction, effect="new", degree_of_freedom="yaw", parameters={}, telling_test=None)
+    twice = (friction, replace(friction, evidence=unsure), unnamed)
     many = tuple(replace(s, round=n, gain=np.nan if n == 3 else s.gain) for n in range(1, 6) for s in result.scores[:6])
     findings = tuple(replace(f, noise=0.0, bands=((0.0, 1.0, np.nan),)) for f in result.anatomy_before[:3])
     odd = replace(result, effects=twice, scores=many, anatomy_before=findings, anatomy_after=findings[:1], seconds=np.inf)
@@ -228,14 +228,19 @@ def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_pa
 
 def test_bands_of_held_out_tests_are_written_and_told(result: Diagnosis, written: Path) -> None:
     """Their widths at every sample beside the motions, in people's units, and how many samples they hold."""
-    one = next(one for one in result.predictions if one.channel == "pitch" or one.test == "surge-3")
-    saved = next(p for p in read_diagnosis(written).predictions if (p.test, p.channel) == (one.test, one.channel))
-    assert saved.samples == len(one.half_width) and saved.inside == one.inside
-    assert saved.half_width == pytest.approx(float(for_people(one.channel, one.half_width[0])))
+    prediction = next(
+        prediction for prediction in result.predictions if prediction.channel == "pitch" or prediction.test == "surge-3"
+    )
+    saved = next(p for p in read_diagnosis(written).predictions if (p.test, p.channel) == (prediction.test, prediction.channel))
+    assert saved.samples == len(prediction.half_width) and saved.inside == prediction.inside
+    assert saved.half_width == pytest.approx(float(for_people(prediction.channel, prediction.half_width[0])))
     with xr.open_dataset(written / "simulated.nc") as data:
-        held = data["half_width"].sel(test=one.test, channel=one.channel).values
+        held = data["half_width"].sel(test=prediction.test, channel=prediction.channel).values
         assert np.nanmax(held) == pytest.approx(saved.half_width)
-        assert np.isfinite(held).sum() == np.isfinite(data["simulated"].sel(test=one.test, channel=one.channel)).sum()
+        assert (
+            np.isfinite(held).sum()
+            == np.isfinite(data["simulated"].sel(test=prediction.test, channel=prediction.channel)).sum()
+        )
         assert np.isnan(data["half_width"].sel(test="surge-1")).all()
     assert "Samples inside" in Page(write_report(written).read_text()).text
 
@@ -243,16 +248,16 @@ def test_bands_of_held_out_tests_are_written_and_told(result: Diagnosis, written
 @pytest.mark.slow
 def test_a_size_at_the_end_of_what_is_plausible_is_told(result: Diagnosis, tmp_path: Path) -> None:
     """With the range and where it comes from; the effect is in doubt, and its probability is beside it."""
-    one = replace(
+    at_limit = replace(
         result.effects[0],
         in_doubt=IMPLAUSIBLE_SIZE,
         plausible={FORCE: PlausibleRange(0.0, 81000.0, "engineering judgement: a tenth of the largest restoring force.", True)},
     )
-    write_diagnosis(replace(result, effects=(one, *result.effects[1:])), tmp_path)
+    write_diagnosis(replace(result, effects=(at_limit, *result.effects[1:])), tmp_path)
     saved = read_diagnosis(tmp_path)
     assert saved.missing.effects[0].plausible["force"].at_end
-    said = words.describe_alternatives(saved.missing.effects[0])
-    assert "at the end of what is plausible: force, plausible from 0 to 81.0 kN (engineering judgement" in said
+    sentence = words.describe_alternatives(saved.missing.effects[0])
+    assert "at the end of what is plausible: force, plausible from 0 to 81.0 kN (engineering judgement" in sentence
     text = Page(write_report(tmp_path).read_text()).text
     assert "97 %" in text and "75 % are predicted better with it" in text and "acts like it" in text
 
@@ -303,7 +308,7 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
     assert path == written / "report.html" and page.tags.count("img") == len(list((written / "figures").iterdir()))
     assert all(link.startswith("data:image/png;base64,") for link in page.links) and "http" not in page.text
     assert not {"link", "iframe", "object"} & set(page.tags) and page.tags.count("script") in (0, 3)
-    told = (
+    passages = (
         "The model lacks Coulomb friction in surge",
         "falls by 69 %",
         "force (81.0 ± 2.1) kN",
@@ -327,17 +332,17 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
         "321 s",
         "Page by",
     )
-    places = [page.text.find(text) for text in told]
-    assert -1 not in places and places == sorted(places), list(zip(told, places))
+    places = [page.text.find(text) for text in passages]
+    assert -1 not in places and places == sorted(places), list(zip(passages, places))
     assert "did not converge" not in page.text and "not determined" in page.text
 
 
 def test_the_page_escapes_what_comes_from_files(result: Diagnosis, tmp_path: Path) -> None:
     evil = '<script>alert("1")</script>&amp; $title'
-    one = result.effects[0]
-    force = replace(one.parameters[FORCE], label=evil, unit=evil)
+    friction = result.effects[0]
+    force = replace(friction.parameters[FORCE], label=evil, unit=evil)
     effect = replace(
-        one,
+        friction,
         effect=evil,
         degree_of_freedom=evil,
         meaning=evil,
@@ -367,20 +372,20 @@ def test_the_page_escapes_what_comes_from_files(result: Diagnosis, tmp_path: Pat
 
 def test_broken_results_are_told(written: Path, tmp_path: Path) -> None:
     good = json.loads((written / "diagnosis.json").read_text())
-    one = good["missing"]["effects"][0]
+    friction = good["missing"]["effects"][0]
     missing, augmented = good["missing"], good["augmented"]
     cases = [
         ({key: good[key] for key in good if key != "augmented"}, "augmented: expected a mapping"),
         (good | {"missing": missing | {"verdict": "maybe"}}, "missing.verdict: expected one of"),
-        (good | {"missing": missing | {"effects": [one | {"parameters": 3}]}}, "missing.effects[0].parameters"),
+        (good | {"missing": missing | {"effects": [friction | {"parameters": 3}]}}, "missing.effects[0].parameters"),
         (good | {"augmented": augmented | {"error": {"a": {"use": "fit", "surge": 3}}}}, "augmented.error.a.surge"),
         ("{", "line 1, column 2: expected valid JSON"),
     ]
-    for content, said in cases:
+    for content, expected in cases:
         (tmp_path / "diagnosis.json").write_text(content if isinstance(content, str) else json.dumps(content))
         with pytest.raises(InputError) as caught:
             write_report(tmp_path)
-        assert said in str(caught.value) and "diagnosis.json" in str(caught.value)
+        assert expected in str(caught.value) and "diagnosis.json" in str(caught.value)
         assert [path.name for path in tmp_path.iterdir()] == ["diagnosis.json"]
 
 
@@ -392,16 +397,16 @@ def test_sizes_and_names_as_people_read_them() -> None:
     assert words.quantity(-3.1e5, 2e4, "kg") == "(-310 ± 20) t"
     assert words.quantity(0.33, 0.01, "-") == "0.330 ± 0.010"
     assert words.quantity(0.12, np.nan, "m/s") == "0.120 m/s"
-    known, small, lost = (
+    sure, small, lost = (
         Parameter(value=value, standard_deviation=sd, unit="N m/rad3", start=start, identifiable=sd is not None)
         for value, sd, start in ((29e3, 9.9e3, 0.0), (201.0, 286.0, 0.0), (201.0, None, 0.0))
     )
-    assert words.describe_parameter("quintic", known) == "quintic (29.0 ± 9.9) kN m/rad³"
+    assert words.describe_parameter("quintic", sure) == "quintic (29.0 ± 9.9) kN m/rad³"
     assert words.describe_parameter("cubic", small) == "cubic not determined: fitted (201 ± 286) N m/rad³"
     assert words.describe_parameter("cubic", lost) == "cubic not determined"
-    assert [name for name, _ in words.sorted_by_certainty({"a": small, "b": known, "c": lost})] == ["b", "a", "c"]
+    assert [name for name, _ in words.sorted_by_certainty({"a": small, "b": sure, "c": lost})] == ["b", "a", "c"]
     assert words.is_determined(small.model_copy(update={"start": 2000.0}))  # known to be small
-    near = known.model_copy(update={"standard_deviation": 20e3})
+    near = sure.model_copy(update={"standard_deviation": 20e3})
     assert words.describe_parameter("quintic", near).endswith("kN m/rad³, less than 2 standard deviations from zero")
     assert (
         words.effect_in_words("hysteresis (surge)") == "hysteresis in surge" and words.effect_in_words("current") == "a current"

@@ -19,9 +19,9 @@ def written(values, form):
     return np.array([float(form % value) for value in values])
 
 
-def coarse(every, values=SMOOTH):
+def coarse(stride, values=SMOOTH):
     """Straight lines between every so many samples, as video tracking that is resampled."""
-    return np.interp(T, T[::every], values[::every])
+    return np.interp(T, T[::stride], values[::stride])
 
 
 def told(folder, values, form="%.17g"):

@@ -39,9 +39,9 @@ def stated(labels: str, value=None, unit=None) -> Parameters:
     return Parameters(names, value, value.copy(), ("-",) * len(names) if unit is None else unit, families)
 
 
-def judged(parameters: Parameters, information: np.ndarray, width: float = VAGUE_DEVIATION, **more) -> Identifiability:
+def judged(parameters: Parameters, information: np.ndarray, width: float = VAGUE_DEVIATION, **options) -> Identifiability:
     """The statement on a linear problem with a prior of one width."""
-    return identifiability(parameters, information, np.linalg.inv(information + np.eye(len(information)) / width**2), **more)
+    return identifiability(parameters, information, np.linalg.inv(information + np.eye(len(information)) / width**2), **options)
 
 
 # linear problems
@@ -70,9 +70,9 @@ def test_two_that_enter_as_a_sum_have_its_weights_and_its_deviation() -> None:
     assert combination.weights == pytest.approx({"column.Ca_t": 1.0, "pontoon.Ca_t": 0.36 / 0.8})
     assert combination.value == pytest.approx(1.2 + 0.36 / 0.8 * 0.51)
     assert combination.standard_deviation == pytest.approx(deviation, rel=1e-6)
-    said = " | ".join(findings.sentences())
-    assert "1 surge decay cannot tell column.Ca_t from pontoon.Ca_t" in said
-    assert "1.00 column.Ca_t + 0.450 pontoon.Ca_t = 1.4295 ± 0.0099 is known" in said
+    sentences = " | ".join(findings.sentences())
+    assert "1 surge decay cannot tell column.Ca_t from pontoon.Ca_t" in sentences
+    assert "1.00 column.Ca_t + 0.450 pontoon.Ca_t = 1.4295 ± 0.0099 is known" in sentences
 
 
 def test_the_deviation_of_a_combination_counts_what_else_is_unknown() -> None:
@@ -80,8 +80,8 @@ def test_the_deviation_of_a_combination_counts_what_else_is_unknown() -> None:
     n, sigma = 30, 0.05
     slope = np.stack([np.ones(n), 0.5 * np.ones(n), np.linspace(0.5, 1.0, n)], axis=1)
     findings = judged(stated("a.Ca_t b.Ca_t c.Cd_t"), slope.T @ slope / sigma**2)
-    both = np.stack([slope[:, 0], slope[:, 2]], axis=1)
-    expected = sigma * math.sqrt(np.linalg.inv(both.T @ both)[0, 0])
+    regressors = np.stack([slope[:, 0], slope[:, 2]], axis=1)
+    expected = sigma * math.sqrt(np.linalg.inv(regressors.T @ regressors)[0, 0])
     assert findings.weak[0].known is not None
     assert findings.weak[0].known.standard_deviation == pytest.approx(expected, rel=1e-6)
 
@@ -115,11 +115,11 @@ def test_many_unknown_directions_are_told_briefly() -> None:
     labels = [f"{x}.Cd_t" for x in "abcdefgh"]
     row = np.array([[1.0, *[0.5] * 6, 1e-4]])
     findings = judged(stated(" ".join(labels)), row.T @ row / 0.02**2 + np.diag([0.0] * 7 + [900.0]))
-    said = findings.sentences()
-    assert len(findings.weak) == 6 and sum(" cannot tell " in x for x in said) == MAX_REPORTED_DIRECTIONS
-    assert sum("act alike (collinearity index without bound" in x for x in said) == 1
-    assert any(x.startswith("2 further combinations of ") and x.endswith("are not known to 25 % either") for x in said)
-    assert not any("0.00" in x or " -0 " in x for x in said)
+    sentences = findings.sentences()
+    assert len(findings.weak) == 6 and sum(" cannot tell " in x for x in sentences) == MAX_REPORTED_DIRECTIONS
+    assert sum("act alike (collinearity index without bound" in x for x in sentences) == 1
+    assert any(x.startswith("2 further combinations of ") and x.endswith("are not known to 25 % either") for x in sentences)
+    assert not any("0.00" in x or " -0 " in x for x in sentences)
 
 
 def test_unknown_directions_are_told_one_pair_at_a_time() -> None:
@@ -136,9 +136,9 @@ def test_an_untouched_parameter_is_said_so() -> None:
     findings = judged(stated("column.Ca_t column.Cd_z pontoon.Cd_t"), information)
     assert findings.untouched == ("column.Cd_z",) and not findings.weak
     assert "no record responds to column.Cd_z: fix it, or add tests that move it" in findings.sentences()
-    both = replace(findings, untouched=("a", "b"), at_bound=("c", "d")).sentences()
-    assert "no record responds to a and b: fix them, or add tests that move them" in both
-    assert "c and d stand at a bound and are taken as fixed there" in both
+    sentences = replace(findings, untouched=("a", "b"), at_bound=("c", "d")).sentences()
+    assert "no record responds to a and b: fix them, or add tests that move them" in sentences
+    assert "c and d stand at a bound and are taken as fixed there" in sentences
     assert findings.spectrum == pytest.approx([1 / 30, 1 / 20, np.inf])
 
 
@@ -164,15 +164,15 @@ def test_what_to_fix_is_what_helps_the_others_most() -> None:
     assert len(findings.weak) == 1
     c, brute = findings.covariance, []
     for j in range(3):  # conditional covariance, by inverting what is left
-        left = np.delete(np.delete(np.linalg.inv(c), j, 0), j, 1)
-        brute.append(np.delete(np.diag(c), j).sum() - np.trace(np.linalg.inv(left)))
+        remaining = np.delete(np.delete(np.linalg.inv(c), j, 0), j, 1)
+        brute.append(np.delete(np.diag(c), j).sum() - np.trace(np.linalg.inv(remaining)))
     fix = findings.fixes[0]
     assert fix.label == findings.parameters.labels[int(np.argmax(brute))]
     assert fix.reduction == pytest.approx(max(brute))
     i = findings.parameters.labels.index(fix.label)
-    other = 1 - i
+    left_free = 1 - i
     assert fix.share == pytest.approx(max(brute) / np.delete(np.diag(c), i).sum())
-    assert fix.after == pytest.approx({"ab"[other] + ".Ca_t": math.sqrt(c[other, other] - c[0, 1] ** 2 / c[i, i])})
+    assert fix.after == pytest.approx({"ab"[left_free] + ".Ca_t": math.sqrt(c[left_free, left_free] - c[0, 1] ** 2 / c[i, i])})
 
 
 def regression(records: int = 3, n: int = 60, shared: int = 3, own: int = 2):
@@ -202,9 +202,9 @@ def test_own_unknowns_are_eliminated_as_by_inverting_everything() -> None:
     np.testing.assert_allclose(actual, brute_force(slope, variance, 3), rtol=1e-9)
     # weighed otherwise, with samples that count as fewer: the inverse of the sandwich that the fit reports
     weight, inflation = np.array([[1.0, 2.0], [3.0, 1.0], [1.0, 1.0]]), np.array([[1.0, 4.0], [2.0, 1.0], [9.0, 1.0]])
-    other = shared_information(products, weight, variance, inflation, 3)
+    expected = shared_information(products, weight, variance, inflation, 3)
     covariance = sandwich_covariance(products, weight, variance, inflation, np.full(3, 1e-9), np.ones(3)).covariance[:3, :3]
-    np.testing.assert_allclose(other, np.linalg.inv(covariance), rtol=1e-7)
+    np.testing.assert_allclose(expected, np.linalg.inv(covariance), rtol=1e-7)
 
 
 def test_the_spectrum_is_that_of_the_projected_jacobian() -> None:
@@ -240,21 +240,21 @@ def test_the_collinearity_index_is_its_definition() -> None:
 def test_the_same_test_again_halves_the_variances() -> None:
     information = np.array([[400.0, 100.0], [100.0, 900.0]])
     findings = judged(stated("a.Ca_t b.Cd_t"), information, width=1e6)
-    more = expected_information(findings, information, "again")
-    np.testing.assert_allclose(more.after**2, more.before**2 / 2, rtol=1e-6)
-    assert more.gain == pytest.approx(0.5 * 2 * math.log(2), rel=1e-6)
+    gain = expected_information(findings, information, "again")
+    np.testing.assert_allclose(gain.after**2, gain.before**2 / 2, rtol=1e-6)
+    assert gain.gain == pytest.approx(0.5 * 2 * math.log(2), rel=1e-6)
 
 
 def test_the_test_that_tells_two_apart_is_ranked_first_and_leaves_nothing_weak() -> None:
     parameters, information, _ = sum_of_two()
     findings = judged(parameters, information)
     row = np.array([[1.0, -1.0, 0.0]])
-    other = row.T @ row / 0.1**2
-    ranked = rank_tests(findings, {"nothing": np.zeros((3, 3)), "the same": information, "another": other})
+    difference = row.T @ row / 0.1**2
+    ranked = rank_tests(findings, {"nothing": np.zeros((3, 3)), "the same": information, "another": difference})
     assert [candidate.name for candidate in ranked] == ["another", "the same", "nothing"]
     assert not ranked[0].weak and len(ranked[1].weak) == len(ranked[2].weak) == 1
     assert ranked[2].gain == 0 and "nothing much better known" in ranked[2].sentence()
-    posterior = np.linalg.inv(np.linalg.inv(findings.covariance) + other)
+    posterior = np.linalg.inv(np.linalg.inv(findings.covariance) + difference)
     np.testing.assert_allclose(ranked[0].after, np.sqrt(np.diag(posterior)), rtol=1e-8)
     determinants = np.linalg.slogdet(findings.covariance)[1] - np.linalg.slogdet(posterior)[1]
     assert ranked[0].gain == pytest.approx(0.5 * determinants, rel=1e-8)
@@ -290,9 +290,9 @@ def test_a_surge_decay_knows_the_added_mass_of_the_hull_and_not_whose_it_is(surg
     _, _, findings, model = surge
     weak = next(weak for weak in findings.weak if "column.Ca_t" in weak.movement)
     assert set(weak.movement) == {"column.Ca_t", "pontoon.Ca_t"} and weak.known is not None
-    said = " | ".join(findings.sentences())
-    assert "1 surge decay cannot tell column.Ca_t from pontoon.Ca_t" in said
-    assert "no record responds to column.Cd_z" in said
+    sentences = " | ".join(findings.sentences())
+    assert "1 surge decay cannot tell column.Ca_t from pontoon.Ca_t" in sentences
+    assert "no record responds to column.Cd_z" in sentences
     # the weights are what either coefficient adds to the mass in surge
     position = jh.equilibrium(model)
 
@@ -314,8 +314,8 @@ def test_the_information_of_a_made_decay_is_that_of_the_fitted_one(surge) -> Non
     noise = effective_noise(fit, tests)
     assert noise["surge"] == pytest.approx(NOISE, rel=0.5)
     period = jh.natural_modes(model).of("surge")
-    again = decay_information(model, fit.decays.problem.space, "surge", 6.0, noise, cycles=LENGTH / period, interval=3.3)
-    first, second = np.sqrt(np.diag(findings.information)), np.sqrt(np.diag(again))
+    predicted = decay_information(model, fit.decays.problem.space, "surge", 6.0, noise, cycles=LENGTH / period, interval=3.3)
+    first, second = np.sqrt(np.diag(findings.information)), np.sqrt(np.diag(predicted))
     np.testing.assert_allclose(second[:3], first[:3], rtol=0.03)
 
 

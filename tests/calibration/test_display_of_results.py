@@ -50,8 +50,8 @@ def test_a_calibration_in_a_few_lines(result: Calibration) -> None:
 
 
 def test_many_parameters_are_counted(result: Calibration) -> None:
-    one = result.parameters["column.Ca_t"]
-    many = replace(result, platform="hull", parameters={f"p{i}": replace(one, label=f"p{i}") for i in range(30)})
+    estimate = result.parameters["column.Ca_t"]
+    many = replace(result, platform="hull", parameters={f"p{i}": replace(estimate, label=f"p{i}") for i in range(30)})
     lines = repr(many).splitlines()
     assert len(lines) == 15 and lines[0] == "Calibration of hull to campaign volturnus-s-decays"
     assert lines[-1] == "  ... and 18 more parameters: `to_dataframe()`"
@@ -113,11 +113,11 @@ def test_tables_in_notebooks(result: Calibration, campaign: Campaign) -> None:
 def test_data_sets_are_those_of_the_files(result: Calibration, tmp_path) -> None:
     xr.testing.assert_identical(result.to_xarray(), dataset(result))
     diagnosis = fake_diagnosis()
-    found = diagnosis.to_xarray()
-    assert found["before"].attrs["long_name"] == "motion of the baseline" and "half_width" in found
+    dataset_made = diagnosis.to_xarray()
+    assert dataset_made["before"].attrs["long_name"] == "motion of the baseline" and "half_width" in dataset_made
     with xr.open_dataset(write_diagnosis(diagnosis, tmp_path, figures=False) / "simulated.nc", engine="h5netcdf") as written:
-        assert set(written.variables) == set(found.variables)
-        np.testing.assert_allclose(written["simulated"], found["simulated"])
+        assert set(written.variables) == set(dataset_made.variables)
+        np.testing.assert_allclose(written["simulated"], dataset_made["simulated"])
 
 
 def test_axes_of_a_calibration(result: Calibration) -> None:
@@ -186,12 +186,12 @@ def test_draws_for_arviz() -> None:
     """Every parameter by chain and draw with its unit; a bootstrap is one chain."""
     arviz = pytest.importorskip("arviz", reason="ArviZ is of the extra `arviz`")
     values = np.random.default_rng(0).normal(size=(2, 50, 2))
-    found = draws_of(values).to_arviz()
-    assert found.posterior.sizes == {"chain": 2, "draw": 50}
-    np.testing.assert_array_equal(found.posterior["linear_damping.B11"], values[..., 1])
-    assert found.posterior["linear_damping.B11"].attrs["units"] == "N s/m"
-    assert found.posterior.attrs["method"] == "NUTS" and found.posterior.attrs["divergences"] == 2
-    assert list(arviz.summary(found).index) == list(LABELS)
+    posterior = draws_of(values).to_arviz()
+    assert posterior.posterior.sizes == {"chain": 2, "draw": 50}
+    np.testing.assert_array_equal(posterior.posterior["linear_damping.B11"], values[..., 1])
+    assert posterior.posterior["linear_damping.B11"].attrs["units"] == "N s/m"
+    assert posterior.posterior.attrs["method"] == "NUTS" and posterior.posterior.attrs["divergences"] == 2
+    assert list(arviz.summary(posterior).index) == list(LABELS)
     once = draws_of(values[0]).to_arviz().posterior
     assert once.sizes == {"chain": 1, "draw": 50} and once.attrs["method"] == "bootstrap over blocks"
 

@@ -58,10 +58,10 @@ def test_the_impedance_of_springs() -> None:
     )
     frequency = np.array([0.0, 0.02, 0.1])
     omega = 2 * np.pi * frequency
-    found = impedance(record, np.zeros(0), frequency)
-    assert_allclose(found[:, 0, 0], STIFFNESS / MASS - omega**2 + 1j * omega * B11 / MASS, rtol=1e-9)
-    assert_allclose(found[:, 1, 1], 1e8 / 5e9 - omega**2 + 1j * omega * 1e8 / 5e9, rtol=1e-9)
-    assert_allclose(found[:, 0, 1], 0, atol=1e-12)
+    matrix = impedance(record, np.zeros(0), frequency)
+    assert_allclose(matrix[:, 0, 0], STIFFNESS / MASS - omega**2 + 1j * omega * B11 / MASS, rtol=1e-9)
+    assert_allclose(matrix[:, 1, 1], 1e8 / 5e9 - omega**2 + 1j * omega * 1e8 / 5e9, rtol=1e-9)
+    assert_allclose(matrix[:, 0, 1], 0, atol=1e-12)
 
 
 def coupled(frequency: np.ndarray) -> np.ndarray:
@@ -91,8 +91,8 @@ def test_noise_alone_is_no_force() -> None:
     """Where all is floor, nothing is missing."""
     random, floor = np.random.default_rng(1), np.full((2, 179), 2e-2)
     lines = floor * (random.normal(size=(2, 179, 2)) @ [1, 1j])
-    found = expected_over_floor(lines, floor, np.zeros(179, int), coupled(np.arange(1, 180) / 3600))
-    assert found.max() < 1.8 and np.median(found) < 1.1
+    over_floor = expected_over_floor(lines, floor, np.zeros(179, int), coupled(np.arange(1, 180) / 3600))
+    assert over_floor.max() < 1.8 and np.median(over_floor) < 1.1
     assert force_spectrum(np.zeros(9), np.ones(9), np.zeros(9, int)).max() == 0
 
 
@@ -123,11 +123,13 @@ def study() -> Study:
 
 def test_pools(study: Study) -> None:
     """Slow bands are one, the mean and every band among the waves are their own; degrees of freedom stay."""
-    (one,) = study.series
-    slow = (one.low > 0) & (one.high <= 0.05)
-    assert slow.sum() > 5 and set(one.pool[slow]) == {1} and one.pool[0] == 0
-    assert_allclose(one.pool[~slow], np.arange(14)[~slow])
-    assert study.pooled[0, 1] == pytest.approx(one.dof[slow].sum()) and study.pooled.sum() == pytest.approx(study.dof.sum())
+    (pooled_series,) = study.series
+    slow = (pooled_series.low > 0) & (pooled_series.high <= 0.05)
+    assert slow.sum() > 5 and set(pooled_series.pool[slow]) == {1} and pooled_series.pool[0] == 0
+    assert_allclose(pooled_series.pool[~slow], np.arange(14)[~slow])
+    assert study.pooled[0, 1] == pytest.approx(pooled_series.dof[slow].sum()) and study.pooled.sum() == pytest.approx(
+        study.dof.sum()
+    )
 
 
 def test_a_resonance_counts_as_what_it_is(study: Study) -> None:
@@ -137,16 +139,16 @@ def test_a_resonance_counts_as_what_it_is(study: Study) -> None:
     frequency = study.cuts[0].take / 3600
     beyond = np.repeat(1 + 300 / (1 + ((frequency - 0.011) / 0.001) ** 2), 2)
     residual = 0.02 * beyond * np.random.default_rng(2).normal(size=rows)
-    told = replace(study, expected=beyond)
-    many = told.pooled > 20
-    assert_allclose(told.levels(residual)[many] / told.levels(0.02 * beyond)[many], 1, atol=0.3)
+    informed = replace(study, expected=beyond)
+    many = informed.pooled > 20
+    assert_allclose(informed.levels(residual)[many] / informed.levels(0.02 * beyond)[many], 1, atol=0.3)
     damped = np.where(np.repeat(np.abs(frequency - 0.011) < 0.003, 2), residual / 10, residual)
-    blind, seen = (float((deviances(s, residual, 0.0) - deviances(s, damped, 0.0)).sum()) for s in (study, told))
+    blind, seen = (float((deviances(s, residual, 0.0) - deviances(s, damped, 0.0)).sum()) for s in (study, informed))
     assert 0 < seen < 0.3 * blind
     # weights are the slopes of what is minimised
     step = 1e-6 * residual
-    change = float((deviances(told, residual + step, 0.2) - deviances(told, residual, 0.2)).sum())
-    assert change == pytest.approx(2 * float((row_weights(told, residual) * residual * step).sum()), rel=1e-4)
+    change = float((deviances(informed, residual + step, 0.2) - deviances(informed, residual, 0.2)).sum())
+    assert change == pytest.approx(2 * float((row_weights(informed, residual) * residual * step).sum()), rel=1e-4)
 
 
 def test_how_well_coefficients_are_known() -> None:
@@ -167,7 +169,10 @@ def test_coefficients_are_anchored_where_the_search_begins(seas: tuple[str, ...]
     names = ("linear_damping.B11", "column.Ca_t", "mass", "effect")
     free = [FreeParameter(name, 1.0, Scaled(0.0, 1.0), 0.3, 0.1 if name == "column.Ca_t" else math.inf) for name in names]
     study = SimpleNamespace(
-        seas=seas, space=ParameterSpace(tuple(free)), index=lambda some: [names.index(name) for name in some], steps=lambda x: x
+        seas=seas,
+        space=ParameterSpace(tuple(free)),
+        index=lambda labels: [names.index(name) for name in labels],
+        steps=lambda x: x,
     )
     prior = Prior(np.array([0.0, 0.3, 0.0, 0.0]), np.ones(4))
     fits = EffectFits.__new__(EffectFits)

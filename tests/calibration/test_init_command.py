@@ -144,8 +144,8 @@ def test_an_embedded_campaign_is_found_by_its_name(tmp_path, monkeypatch):
     ],
 )
 def test_channel_of_a_name(column: str, channel: str | None) -> None:
-    found = channel_of(column)
-    assert (found and found[0]) == channel
+    match = channel_of(column)
+    assert (match and match[0]) == channel
 
 
 def test_motion_in_the_name_of_a_file() -> None:
@@ -226,8 +226,8 @@ def test_files_written_in_many_ways(tmp_path: Path) -> None:
     made = campaign(tmp_path / "new", *files)
     assert [record.degree_of_freedom for record in made.records] == ["surge", "pitch", "heave"]
     expected = (surge.surge_m, np.deg2rad(pitch.pitch_deg), heave.heave_m)
-    for one, values in zip(made.records, expected):
-        np.testing.assert_allclose(one.values[str(one.degree_of_freedom)], values, atol=1e-9)
+    for decay, values in zip(made.records, expected):
+        np.testing.assert_allclose(decay.values[str(decay.degree_of_freedom)], values, atol=1e-9)
     text = (tmp_path / "new" / "campaign.yaml").read_text()
     assert 'column: "Surge [mm]", unit: mm' in text and "CHECK: by its name; no unit in the files" not in text
     assert "column: theta, unit: deg" in text
@@ -269,8 +269,8 @@ def test_measured_roll_decay(tmp_path: Path) -> None:
     if not folder.is_dir():
         pytest.skip("the measured KVLCC2 records are not on this machine")
     made = campaign(tmp_path / "new", folder / "21337.csv", platform=str(folder / "platform.yaml"))
-    (one,) = made.records
-    assert (one.kind, one.degree_of_freedom, one.use) == ("decay", "roll", "fit")
+    (record,) = made.records
+    assert (record.kind, record.degree_of_freedom, record.use) == ("decay", "roll", "fit")
     assert made.manifest.channels["roll"].unit == "rad" and "yaw" not in made.manifest.channels
     assert made.platform.name.startswith("KVLCC2")
 
@@ -309,7 +309,7 @@ def test_what_is_refused_leaves_nothing(tmp_path: Path) -> None:
     shutil.copy(good, tmp_path / "other")
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "notes.txt").write_text("mine")
-    for words, said in (
+    for words, expected in (
         (["full"], "expected a folder that is new or empty, found a folder that is not empty"),
         (["good.csv"], "which is a file"),
         (["new", "torn.csv"], "torn.csv: row 3, column heave_m: expected a number, found 'x'"),
@@ -321,7 +321,7 @@ def test_what_is_refused_leaves_nothing(tmp_path: Path) -> None:
         (["new", "--scale", "70:1"], "70 or 1:70 expected; found 70:1"),
     ):
         paths = [str(tmp_path / word) if word.endswith(".csv") or word in ("full", "new") else word for word in words]
-        assert said in run("init", *paths, status=2)
+        assert expected in run("init", *paths, status=2)
     assert not (tmp_path / "new").exists() and [path.name for path in (tmp_path / "full").iterdir()] == ["notes.txt"]
 
 

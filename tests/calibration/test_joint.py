@@ -63,26 +63,28 @@ def campaign(tmp_path_factory):
     (folder / "platform.yaml").write_text(HULL.read_text())
     platform = jh.load_platform(folder / "platform.yaml")
     model = with_diffraction(build(platform), OPTIONS)
-    rest, rng = np.asarray(jh.equilibrium(model)), np.random.default_rng(5)
+    equilibrium, rng = np.asarray(jh.equilibrium(model)), np.random.default_rng(5)
     (folder / "campaign.yaml").write_text(json.dumps(manifest(model)))
 
     def write(name: str, time, positions, wave=None) -> None:
-        motion = [positions[:, DOFS.index(d)] - rest[DOFS.index(d)] + rng.normal(0, NOISE[d], len(time)) for d in CHANNELS]
+        motion = [
+            positions[:, DOFS.index(d)] - equilibrium[DOFS.index(d)] + rng.normal(0, NOISE[d], len(time)) for d in CHANNELS
+        ]
         (folder / name).write_text(rows(time, np.stack([np.zeros(len(time)) if wave is None else wave, *motion])))
 
     for dof, released, duration in (("surge", 6.0, 500.0), ("heave", 2.0, 150.0)):
         time = np.arange(0.0, duration, STEP)
         write(f"{dof}.csv", time, np.asarray(jh.free_decay(model, {dof: released}, time).position))
     time = np.arange(0.0, 60.0, STEP)
-    still = np.tile(np.asarray(held_at(model, 0, rest[0] + HELD)), (len(time), 1))
+    still = np.tile(np.asarray(held_at(model, 0, equilibrium[0] + HELD)), (len(time), 1))
     write("held.csv", time, still)
-    write("rest.csv", time, np.tile(rest, (len(time), 1)))
+    write("rest.csv", time, np.tile(equilibrium, (len(time), 1)))
     environment = jh.Environment(1025.0, 200.0)
     band = {"low": 0.05, "cutoff": 0.18, "seed": 2}
     waves = jh.spectrum_components(lambda w: jh.jonswap(w, 5.0, 10.0, 3.3), SEA, environment, **band)
     time = np.arange(0.0, SEA, STEP)
     wave = jh.IrregularSea(waves, environment).gauge(time)
-    write("sea.csv", time, np.tile(rest, (len(time), 1)) + np.sin(time)[:, None], wave)
+    write("sea.csv", time, np.tile(equilibrium, (len(time), 1)) + np.sin(time)[:, None], wave)
     first = load_campaign(folder)
     ((run, sea),) = seas_of(first, environment, OPTIONS)
     (part,) = run_segments(run, run.records, model, OPTIONS.low, OPTIONS.cutoff)
@@ -102,10 +104,10 @@ def model(campaign):
 
 def test_a_motion_held_by_a_force(model) -> None:
     """The other five forces vanish; a body on a matrix of springs rests where the matrix says."""
-    rest = np.asarray(jh.equilibrium(model))
-    found = held_at(model, 0, jnp.asarray(rest[0] + HELD))
-    force = np.asarray(model.force_at_rest(found))
-    assert found[0] == pytest.approx(rest[0] + HELD) and abs(found[4] - rest[4]) > 1e-4
+    equilibrium = np.asarray(jh.equilibrium(model))
+    position = held_at(model, 0, jnp.asarray(equilibrium[0] + HELD))
+    force = np.asarray(model.force_at_rest(position))
+    assert position[0] == pytest.approx(equilibrium[0] + HELD) and abs(position[4] - equilibrium[4]) > 1e-4
     assert np.abs(force[1:]).max() < 1e-9 * float(model.body.mass) * 9.81 and abs(force[0]) > 1e5
     stiff = {"C11": 1e5, "C15": -2e6, "C51": -2e6, "C55": 3e9, "C33": 4e6, "C22": 1e5, "C44": 3e9, "C66": 1e9}
     body = eqx.tree_at(lambda m: m.loads, model, (Stiffness(stiff),))
@@ -117,8 +119,8 @@ def test_a_motion_held_by_a_force(model) -> None:
 @pytest.mark.parametrize("dof", ["heave", "pitch"])
 def test_a_natural_period_and_its_slope(model, dof: str) -> None:
     """`natural_modes`, by another package's eigenvalues; the slope by differences."""
-    found = jax.jit(lambda: natural_period(model, DOFS.index(dof)))()
-    assert float(found) == pytest.approx(jh.natural_modes(model).of(dof), rel=1e-9)
+    seconds = jax.jit(lambda: natural_period(model, DOFS.index(dof)))()
+    assert float(seconds) == pytest.approx(jh.natural_modes(model).of(dof), rel=1e-9)
     label = "pontoon.Ca_z" if dof == "heave" else "column.Ca_t"
     value = float(model.values[label])
 
@@ -169,23 +171,23 @@ def start(model) -> dict[str, float]:
 
 def found_back(result, model) -> None:
     for label in LABELS:
-        one, true = result.parameters[label], float(model.values[label])
-        assert one.identifiable, label
-        assert abs(one.value - true) < min(3 * one.standard_deviation, 0.05 * true) + 0.01 * true, label
+        estimate, true = result.parameters[label], float(model.values[label])
+        assert estimate.identifiable, label
+        assert abs(estimate.value - true) < min(3 * estimate.standard_deviation, 0.05 * true) + 0.01 * true, label
 
 
 def test_coefficients_are_found_back_without_waves(campaign, start, model) -> None:
     """By decays, offsets and periods, within three of their deviations and 5 %; the stages are said, and what was fitted."""
-    said = []
+    reports = []
     kinds = ("decays", "offsets", "periods")
-    result = calibrate_jointly(campaign, kinds=kinds, start=start, options=OPTIONS, progress=said.append)
+    result = calibrate_jointly(campaign, kinds=kinds, start=start, options=OPTIONS, progress=reports.append)
     assert result.converged
     found_back(result, model)
     assert {test.id for test in result.tests} == {"surge-decay", "heave-decay"}
     assert result.identifiability.source == "2 decays, 1 static offset and 2 natural periods"
-    stages = {now.stage for now in said}
+    stages = {now.stage for now in reports}
     assert any(stage.startswith("first") for stage in stages) and "round 1" in stages
-    fractions = [now.fraction for now in said]
+    fractions = [now.fraction for now in reports]
     assert fractions == sorted(fractions)
 
 
@@ -220,8 +222,8 @@ def test_outliers_hardly_count(campaign, start, model) -> None:
     begin = {k: v for k, v in start.items() if k in options["free"]}
     off = {}
     for loss in ("squares", "cauchy"):
-        found = calibrate_jointly(broken, loss=loss, start=begin, **options).parameters
-        off[loss] = max(abs(found[label].value / float(model.values[label]) - 1) for label in options["free"])
+        estimates = calibrate_jointly(broken, loss=loss, start=begin, **options).parameters
+        off[loss] = max(abs(estimates[label].value / float(model.values[label]) - 1) for label in options["free"])
     assert off["cauchy"] < 0.01 and off["squares"] > 0.03
 
 

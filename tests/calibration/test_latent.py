@@ -83,7 +83,7 @@ def model(tmp_path_factory):
 
 def decays(model, torque, seed=0, releases=RELEASES) -> list[tuple[ResampledTest, np.ndarray]]:
     """Decays with a torque (N m) that the model does not have, and the torque along them."""
-    found = []
+    tests_and_torques = []
     for i, (amplitude, use) in enumerate(releases):
         roll, speed = rolled(torque, amplitude)
         measured = roll + np.random.default_rng(10 * seed + i).normal(0, NOISE, TIME.size)
@@ -91,8 +91,8 @@ def decays(model, torque, seed=0, releases=RELEASES) -> list[tuple[ResampledTest
         test = ResampledTest(
             f"roll-{i}", use, "decay", TIME, {"roll": measured}, {"roll": simulated}, {"roll": NOISE}, StillWater()
         )
-        found.append((test, torque(roll, speed)))
-    return found
+        tests_and_torques.append((test, torque(roll, speed)))
+    return tests_and_torques
 
 
 @pytest.mark.slow
@@ -103,14 +103,14 @@ def decays(model, torque, seed=0, releases=RELEASES) -> list[tuple[ResampledTest
 def test_the_force_is_found_back(model, torque, least):
     """Inside the record it is the torque that SciPy had, as far as it can be seen: 0.998 correlated, to 0.6 % of its size."""
     for test, true in decays(model(), torque):
-        found = forces_of(model(), test, np.zeros(6), highest_frequency(model()))["roll"]
-        some = found.inside
-        assert found.visible and some.stop - some.start > 0.85 * len(TIME)
-        assert np.corrcoef(found.force[some], true[some])[0, 1] > least
-        seen = found.through_filter(true)[some]
-        assert np.corrcoef(found.force[some], seen)[0, 1] > 0.995
-        assert_allclose(np.std(found.force[some]), np.std(seen), rtol=0.02)
-        assert np.std(found.force[some] - seen) < 3 * found.noise + 0.02 * np.std(seen)
+        recovered = forces_of(model(), test, np.zeros(6), highest_frequency(model()))["roll"]
+        inside = recovered.inside
+        assert recovered.visible and inside.stop - inside.start > 0.85 * len(TIME)
+        assert np.corrcoef(recovered.force[inside], true[inside])[0, 1] > least
+        seen = recovered.through_filter(true)[inside]
+        assert np.corrcoef(recovered.force[inside], seen)[0, 1] > 0.995
+        assert_allclose(np.std(recovered.force[inside]), np.std(seen), rtol=0.02)
+        assert np.std(recovered.force[inside] - seen) < 3 * recovered.noise + 0.02 * np.std(seen)
 
 
 @pytest.mark.parametrize(
@@ -126,18 +126,18 @@ def test_the_force_is_found_back(model, torque, least):
 def test_the_law_is_named(model, torque, damping, expected, power):
     """Its terms, coefficients, the share of the held-out decay that it explains, and how the force grows."""
     tests = [test for test, _ in decays(model(damping), torque)]
-    (found,) = latent_forces(model(damping), tests, ["roll"], False)
-    terms = {term.name: term.coefficient for term in found.law.terms}
+    (force,) = latent_forces(model(damping), tests, ["roll"], False)
+    terms = {term.name: term.coefficient for term in force.law.terms}
     assert set(terms) == set(expected)
     for name, value in expected.items():
         assert_allclose(terms[name], value, rtol=0.15)
-    assert found.law.share > 0.9 and found.law.checked == "held-out tests"
-    assert (found.motion, found.unit) == ("roll", "N m")
+    assert force.law.share > 0.9 and force.law.checked == "held-out tests"
+    assert (force.motion, force.unit) == ("roll", "N m")
     if power is not None:
-        assert_allclose(found.growth["amplitude"], power, atol=0.2)
-        assert f"{next(iter(expected))} explains" in found.words
-    assert_allclose(sum(found.shares["decay"].values()), 1.0)
-    follows = found.coherence["decay"]
+        assert_allclose(force.growth["amplitude"], power, atol=0.2)
+        assert f"{next(iter(expected))} explains" in force.words
+    assert_allclose(sum(force.shares["decay"].values()), 1.0)
+    follows = force.coherence["decay"]
     along, across = ("position", "velocity") if torque is cubic else ("velocity", "position")
     assert follows[along].correlation < (-0.8 if damping == 2.4 else -0.5)
     assert np.cos(follows[along].phase) < -0.95 and abs(follows[across].correlation) < 0.1
@@ -148,10 +148,10 @@ def test_a_law_is_said_in_seconds_and_units():
     """Not in omegas: the time constant of a lag, the speed at which friction turns."""
     lag, turns = LAGGED_TERMS[1], [kind.name for kind in STILL_WATER_TERMS].index("tanh(v/v0)")
     terms = tuple(LawTerm(STILL_WATER_TERMS[i].name, -2.0, "N m", i) for i in (lag, turns))
-    said = law_in_words(Law(terms, 0.8, 0.9, "held-out tests", v0=0.02, pace=0.5), "N m")
-    assert "v lagged by a time constant of 2.0 s" in said and said.endswith("v0 = 0.020 rad/s")
-    said = law_in_words(Law(terms[1:], 0.8, 0.9, "held-out tests", v0=0.02), "N")
-    assert "lagged" not in said and said.endswith("v0 = 0.020 m/s")
+    sentence = law_in_words(Law(terms, 0.8, 0.9, "held-out tests", v0=0.02, pace=0.5), "N m")
+    assert "v lagged by a time constant of 2.0 s" in sentence and sentence.endswith("v0 = 0.020 rad/s")
+    sentence = law_in_words(Law(terms[1:], 0.8, 0.9, "held-out tests", v0=0.02), "N")
+    assert "lagged" not in sentence and sentence.endswith("v0 = 0.020 m/s")
 
 
 def test_blocks_left_out_in_turn(model):
@@ -209,42 +209,42 @@ def test_slow_drift_goes_with_the_squared_envelope():
         sea(height, i, use, lambda wave: 4e4 * np.abs(hilbert(wave)) ** 2)
         for i, (height, use) in enumerate([(3.0, "fit"), (7.0, "fit"), (5.0, "holdout")])
     ]
-    found = described("surge", forces, law_of("surge", forces))
-    follows = found.coherence["waves"]
+    description = described("surge", forces, law_of("surge", forces))
+    follows = description.coherence["waves"]
     assert follows["squared_envelope"].coherence > 0.9 and abs(follows["squared_envelope"].phase) < 0.05
     assert follows["elevation"].coherence < 0.3 and follows["velocity"].coherence < 0.3
-    assert found.shares["waves"]["wave_frequency"] < 0.05
-    assert_allclose(found.growth["significant_height.low_frequency"], 2.0, atol=0.2)
-    assert [(term.name, term.unit) for term in found.law.terms] == [("eta^2 slow", "N/m2")]
-    assert_allclose(found.law.terms[0].coefficient, 4e4, rtol=0.05)
-    assert found.law.share > 0.9 and "coherent with the squared wave envelope" in found.words
+    assert description.shares["waves"]["wave_frequency"] < 0.05
+    assert_allclose(description.growth["significant_height.low_frequency"], 2.0, atol=0.2)
+    assert [(term.name, term.unit) for term in description.law.terms] == [("eta^2 slow", "N/m2")]
+    assert_allclose(description.law.terms[0].coefficient, 4e4, rtol=0.05)
+    assert description.law.share > 0.9 and "coherent with the squared wave envelope" in description.words
 
 
-@pytest.mark.parametrize("known", [0.0, 0.12], ids=["nothing", "little"])
-def test_what_follows_next_to_nothing_has_no_law(known):
+@pytest.mark.parametrize("share", [0.0, 0.12], ids=["nothing", "little"])
+def test_what_follows_next_to_nothing_has_no_law(share):
     """A force that has to do with neither motion nor wave, or of which the wave is an eighth."""
     rng, uses = np.random.default_rng(7), ("fit", "fit", "holdout")
 
     def law(wave):
-        return 1e5 * ((1 - known) ** 0.5 * rng.standard_normal(len(wave)) + known**0.5 * wave / np.std(wave))
+        return 1e5 * ((1 - share) ** 0.5 * rng.standard_normal(len(wave)) + share**0.5 * wave / np.std(wave))
 
     forces = [sea(5.0, i, use, law) for i, use in enumerate(uses)]
-    found = described("surge", forces, law_of("surge", forces))
-    assert found.law.terms == () and "no law" in found.words
-    assert_allclose(found.law.share, known, atol=0.04)
-    assert all(one.coherence < 0.3 for one in found.coherence["waves"].values())
+    description = described("surge", forces, law_of("surge", forces))
+    assert description.law.terms == () and "no law" in description.words
+    assert_allclose(description.law.share, share, atol=0.04)
+    assert all(follows.coherence < 0.3 for follows in description.coherence["waves"].values())
 
 
 def test_terms_that_all_but_cancel_are_no_law():
     """Two terms that differ by a thousandth follow anything that is like their difference."""
-    one, other = np.random.default_rng(0).standard_normal((2, 500))
-    terms = np.column_stack([one, one + 1e-3 * other, 0.3 * other])
-    part = RegressionBlock(other, terms, terms, 1.0)
+    first, second = np.random.default_rng(0).standard_normal((2, 500))
+    terms = np.column_stack([first, first + 1e-3 * second, 0.3 * second])
+    part = RegressionBlock(second, terms, terms, 1.0)
     assert best_terms(part.products(), 2)[0] != (0, 1)
     chosen, coefficients = best_terms(part.products(), 1)
     assert chosen == (2,)
     assert_allclose(coefficients, 1 / 0.3, rtol=1e-6)
-    assert best_terms(RegressionBlock(other, terms[:, :2], terms[:, :2], 1.0).products(), 2)[0] == ()
+    assert best_terms(RegressionBlock(second, terms[:, :2], terms[:, :2], 1.0).products(), 2)[0] == ()
 
 
 @pytest.mark.slow

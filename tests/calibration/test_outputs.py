@@ -63,7 +63,10 @@ def contents(folder: Path) -> dict[str, bytes]:
 def changed(result: Calibration, test: int, **series) -> Calibration:
     """The result with the main series of one test changed."""
     tests = list(result.tests)
-    rows = tuple(replace(one, **series) if one is tests[test].main else one for one in tests[test].series)
+    rows = tuple(
+        replace(series_of_test, **series) if series_of_test is tests[test].main else series_of_test
+        for series_of_test in tests[test].series
+    )
     tests[test] = replace(tests[test], series=rows)
     return replace(result, tests=tuple(tests))
 
@@ -97,8 +100,8 @@ def required_keys(part: dict[str, Any], whole: dict[str, Any], document: Any, pa
     if isinstance(document, dict):
         yield from ((*path, name) for name in part.get("required", ()))
         for name, value in document.items():
-            other = part.get("additionalProperties", {})
-            yield from required_keys(part.get("properties", {}).get(name, other), whole, value, (*path, name))
+            default = part.get("additionalProperties", {})
+            yield from required_keys(part.get("properties", {}).get(name, default), whole, value, (*path, name))
 
 
 def test_a_document_without_a_key_of_the_contract_is_refused() -> None:
@@ -135,9 +138,9 @@ def test_the_document_says_what_the_contract_says(result: Calibration, written: 
     assert baseline["converged"] is True
     assert baseline["objective"]["fit"] == pytest.approx(result.objective("fit"))
     assert baseline["objective"]["holdout"] == pytest.approx(result.objective("holdout"))
-    one = baseline["parameters"]["column.Ca_t"]
-    assert (one["value"], one["start"], one["unit"], one["identifiable"]) == (1.48, 1.0, "-", True)
-    assert one["meaning"] and one["standard_deviation"] == pytest.approx(0.0148)
+    parameter = baseline["parameters"]["column.Ca_t"]
+    assert (parameter["value"], parameter["start"], parameter["unit"], parameter["identifiable"]) == (1.48, 1.0, "-", True)
+    assert parameter["meaning"] and parameter["standard_deviation"] == pytest.approx(0.0148)
     lost = baseline["parameters"]["linear_damping.B33"]
     assert lost["standard_deviation"] is None and lost["identifiable"] is False and lost["unit"] == "N s/m"
     assert baseline["parameters"]["column.Cd_z"]["at_bound"] is True
@@ -167,7 +170,7 @@ def test_what_is_not_finite_is_null_or_left_out_or_refused(result: Calibration) 
 
 def test_a_written_result_is_read_back(result: Calibration, written: Path) -> None:
     values = read_values(written / "calibration.json")
-    assert values == {label: one.value for label, one in result.parameters.items()} == read_values(written)
+    assert values == {label: parameter.value for label, parameter in result.parameters.items()} == read_values(written)
     assert read_saved(written).baseline.error["surge-1"].channels["surge"].unit == "m"
 
 
@@ -199,14 +202,14 @@ def test_the_series_are_on_one_time_axis_with_units(result: Calibration, written
         assert data.time.attrs["units"] == "s" and all("long_name" in data[name].attrs for name in data.data_vars)
         for test in result.tests:
             for series in test.series:
-                here = {"test": test.id, "channel": series.channel}
+                selection = {"test": test.id, "channel": series.channel}
                 factor = 180 / np.pi if series.channel == "pitch" else 1.0
                 for name, values in (
                     ("measured", series.measured),
                     ("simulated", series.simulated),
                     ("before", test.start[series.channel]),
                 ):
-                    got = data[name].sel(here).values
+                    got = data[name].sel(selection).values
                     np.testing.assert_allclose(got[: len(values)], factor * values, atol=1e-12)
                     assert np.isnan(got[len(values) :]).all()
         assert data.attrs["sampling"] == "as recorded" and list(data.use.values) == ["fit", "fit", "holdout"]
@@ -246,7 +249,7 @@ def test_figures_of_odd_results_can_be_drawn(result: Calibration, tmp_path: Path
     still = replace(first, start={}, series=(replace(first.main, measured=0 * first.time),))
     values = [(0.0, 0.0, "N", 0.0), (1e-9, 1e-10, "m", 1e6), (-5.0, np.inf, "N/m", 3.0), (1e8, None, "N", 2e3)]
     odd = [Estimate(f"a.{i}", *value[:3], "", value[3], False, True) for i, value in enumerate(values)]
-    strange = replace(result, tests=(still,), parameters={one.label: one for one in odd})
+    strange = replace(result, tests=(still,), parameters={estimate.label: estimate for estimate in odd})
     write_calibration(strange, tmp_path / "a")
     assert not (tmp_path / "a" / "figures" / "decay-surge.png").exists()
     write_calibration(replace(result, tests=result.tests[1:2], parameters={}), tmp_path / "b")
@@ -381,7 +384,7 @@ def test_the_report_is_one_page_that_needs_nothing_else(written: Path) -> None:
     assert all(link.startswith("data:image/png;base64,") for link in page.links)
     assert not {"link", "iframe", "object"} & set(page.tags) and page.tags.count("script") in (0, 3)
     assert "http" not in page.text and "url(" not in path.read_text() and "@import" not in path.read_text()
-    told = (
+    passages = (
         "volturnus-s-decays",
         "2 decays followed to",
         "1 held-out decay",
@@ -404,10 +407,10 @@ def test_the_report_is_one_page_that_needs_nothing_else(written: Path) -> None:
         "Figures",
     )
     places, at = [], 0
-    for words in told:
+    for words in passages:
         at = page.text.find(words, at)
         places.append(at)
-    assert -1 not in places, list(zip(told, places))
+    assert -1 not in places, list(zip(passages, places))
     assert page.text.count("1.70·10⁵") == page.text.count("(1.70·10⁵)") == 1  # a value that the records do not determine
     assert page.tags.count("details") == 1 and "true coefficients" not in page.text
 
@@ -421,13 +424,13 @@ def test_the_page_has_the_classical_damping_and_the_truth_of_the_file(result: Ca
             jsonschema.Draft202012Validator(json.loads(path.read_text())).validate(read)
     test = result.tests[2]
     fits = [classical(test.time, x, test.main.noise).fit for x in (test.main.measured, test.main.simulated)]
-    found = read["tests"]["pitch-1"]["linear_quadratic"]
-    assert found["unit"] == "rad" and found["period"] == pytest.approx(fits[0].period)
-    assert found["quadratic"]["measured"] == pytest.approx(fits[0].quadratic.value)
-    assert found["quadratic"]["simulated"] == pytest.approx(fits[1].quadratic.value)
-    assert found["linear"]["half_width"] == pytest.approx(fits[0].linear.upper - fits[0].linear.value)
+    damping = read["tests"]["pitch-1"]["linear_quadratic"]
+    assert damping["unit"] == "rad" and damping["period"] == pytest.approx(fits[0].period)
+    assert damping["quadratic"]["measured"] == pytest.approx(fits[0].quadratic.value)
+    assert damping["quadratic"]["simulated"] == pytest.approx(fits[1].quadratic.value)
+    assert damping["linear"]["half_width"] == pytest.approx(fits[0].linear.upper - fits[0].linear.value)
     page = Page(write_report(folder).read_text(encoding="utf-8")).text
-    assert with_deviation(found["quadratic"]["measured"], found["quadratic"]["half_width"]) in page
+    assert with_deviation(damping["quadratic"]["measured"], damping["quadratic"]["half_width"]) in page
     assert "Against the true coefficients" in page and "0 of 1 coefficients lie" not in page and "-1.4 sd" in page
     read.pop("truth")
     read["tests"]["pitch-1"].pop("linear_quadratic")
@@ -488,7 +491,7 @@ def test_no_report_without_results(tmp_path: Path) -> None:
 
 def test_decays_of_one_motion_that_are_not_followed_make_one_note(result: Calibration) -> None:
     first, heave = result.tests[:2]
-    still = tuple(replace(one, simulated=np.zeros_like(one.simulated)) for one in first.series)
+    still = tuple(replace(series, simulated=np.zeros_like(series.simulated)) for series in first.series)
     lost = [replace(first, id=f"surge-{i}", series=still) for i in (1, 2)]
     (note,) = records_not_followed([*lost, heave, replace(lost[0], use="holdout")], result.model)
     assert note.startswith("the model does not follow surge-1 and surge-2: the RMSE is 100 % of the motion's standard")

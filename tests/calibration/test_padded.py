@@ -73,13 +73,13 @@ def test_padding_changes_no_result(campaign, monkeypatch) -> None:
         fit = prepare_fit(cut(campaign, 0.37, ids))
         return fit.decays.problem.data, fit.decays.problem.products(fit.unknowns)
 
-    padded, found = products()
+    padded, unpadded = products()
     monkeypatch.setattr("calibration.residuals.decays.padded_size", lambda count: count)
     exact, expected = products()
     assert padded.time.shape[1] > exact.time.shape[1] and padded.capacity > exact.capacity
     scale = np.sqrt(np.einsum("rckk->rck", expected))
     limit = 1e-12 * scale[..., :, None] * scale[..., None, :] + 1e-300
-    assert (np.abs(found - expected) <= limit).all()
+    assert (np.abs(unpadded - expected) <= limit).all()
 
 
 @pytest.mark.slow
@@ -90,11 +90,11 @@ def test_blocks_of_decays_take_the_programs_of_whole_decays(campaign) -> None:
     blocks, _ = study_in_blocks(study, campaign.records)
     assert len(blocks.decay_records) > len(study.decay_records) == 1
     compiled = []
-    for one in (study, blocks):
-        own = first_guess(one.decay_records, one.decays.data)
-        (motions,) = one.motions(Point(np.asarray(one.space.start), np.asarray(own)))
-        expected = one.decays.residual(one.space.start, own[0], one.simulations.decays.padded_data[0])
-        channels, samples = len(one.decays.data.dofs), one.decays.data.time.shape[1]
+    for variant in (study, blocks):
+        own = first_guess(variant.decay_records, variant.decays.data)
+        (motions,) = variant.motions(Point(np.asarray(variant.space.start), np.asarray(own)))
+        expected = variant.decays.residual(variant.space.start, own[0], variant.simulations.decays.padded_data[0])
+        channels, samples = len(variant.decays.data.dofs), variant.decays.data.time.shape[1]
         np.testing.assert_allclose(motions[:channels], expected[:, :samples], atol=1e-12)
         assert not np.any(expected[:, samples:])
         compiled.append(len(decay_residual._compiled))

@@ -64,7 +64,7 @@ def test_a_sound_campaign_has_nothing_odd():
 
 
 @pytest.mark.parametrize(
-    ("channels", "where", "told"),
+    ("channels", "where", "pattern"),
     [
         ({"time": {"unit": "ms"}}, "surge-1.csv, test surge-1, channel surge", r"a period of 0\.1\d+ s .* model's is 1\d\d s"),
         ({"time": {"unit": "min"}}, "heave-1.csv, test heave-1, channel heave", r"a period of 1\.\d+e\+03 s"),
@@ -72,11 +72,11 @@ def test_a_sound_campaign_has_nothing_odd():
         ({"heave": {"column": "surge_m"}}, "surge-1.csv, channel heave of test surge-1", "that of channel surge, 'surge_m'"),
     ],
 )
-def test_a_wrong_unit_is_an_error(tmp_path, channels, where, told):
+def test_a_wrong_unit_is_an_error(tmp_path, channels, where, pattern):
     with pytest.raises(InputError) as error:
         load_campaign(stated(tmp_path / "campaign", **channels))
     faults = {problem.where: problem.found for problem in error.value.problems}
-    assert re.search(told, faults[where])
+    assert re.search(pattern, faults[where])
 
 
 def test_a_motion_in_millimetres_is_an_error(tmp_path):
@@ -87,9 +87,9 @@ def test_a_motion_in_millimetres_is_an_error(tmp_path):
 
 def test_what_is_odd_is_a_warning(tmp_path):
     small = load_campaign(stated(tmp_path / "small", heave={"unit": "mm"}))
-    told = [finding for finding in small.findings if "moves by 0.00" in finding.message]
-    assert {(finding.test, finding.severity) for finding in told} == {(f"heave-{i}", "warning") for i in (1, 2, 3)}
-    units = [finding for finding in small.findings if finding not in told]
+    still_findings = [finding for finding in small.findings if "moves by 0.00" in finding.message]
+    assert {(finding.test, finding.severity) for finding in still_findings} == {(f"heave-{i}", "warning") for i in (1, 2, 3)}
+    units = [finding for finding in small.findings if finding not in still_findings]
     together = (
         "all releases in heave are as if 1000 times too small. Are millimetres and metres mixed up (`channels.heave.unit`)?"
     )
@@ -157,14 +157,14 @@ mooring: {kind: none}
 
 
 @pytest.mark.parametrize(
-    ("restoring", "told"),
+    ("restoring", "expected"),
     [
         ("C44: 650.0", ["heave: C33, or take heave", "pitch: C55, or take pitch"]),
         ("C44: 650.0, C33: 30000.0, C55: 40000.0", []),
         ("C33: 30000.0, C55: 40000.0", ["roll: C44"]),
     ],
 )
-def test_a_measured_motion_that_nothing_restores_is_told(tmp_path, restoring, told):
+def test_a_measured_motion_that_nothing_restores_is_told(tmp_path, restoring, expected):
     """A fit of the roll of a ship would pitch it to lengthen its period."""
     time = np.arange(0, 40, 0.1)
     roll = np.radians(8) * np.exp(-0.02 * time) * np.cos(2 * np.pi * time / 2.5)
@@ -184,4 +184,4 @@ def test_a_measured_motion_that_nothing_restores_is_told(tmp_path, restoring, to
         for finding in load_campaign(tmp_path).findings
         if "nothing restores" in finding.message
     ]
-    assert warned == told
+    assert warned == expected

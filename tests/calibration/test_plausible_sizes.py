@@ -42,7 +42,7 @@ LINES = [[150.0, 0.0], [-75.0, 130.0], [-75.0, -130.0]]  # m, anchors
 
 def spar(size: float) -> Model:
     """A stout spar on three springs, lengths times `size`."""
-    point = lambda *x: [size * one for one in x]  # noqa: E731
+    point = lambda *x: [size * coordinate for coordinate in x]  # noqa: E731
     member = {"name": "hull", "group": "hull", "shape": "circ", "d": 20.0 * size, "rA": point(0, 0, -40), "rB": point(0, 0, 10)}
     line = {"stiffness": 4e4 * size**2, "pretension": 2e5 * size**3}
     data = {
@@ -58,7 +58,8 @@ def spar(size: float) -> Model:
         "mooring": {
             "kind": "linear_springs",
             "lines": [
-                {"anchor": point(*one, -20.0), "fairlead": point(one[0] / 15, one[1] / 15, -20.0), **line} for one in LINES
+                {"anchor": point(*direction, -20.0), "fairlead": point(direction[0] / 15, direction[1] / 15, -20.0), **line}
+                for direction in LINES
             ],
         },
     }
@@ -76,7 +77,7 @@ def case(name: str):
     else:
         model, spread = spar(size), {dof: s * size if dof in DOFS[:3] else s for dof, s in SPREAD.items()}
     waves = name not in ("one motion", "decays only")
-    scales = noticeable_scales(*(np.asarray(one) for one in linearised(model, equilibrium(model))), spread)
+    scales = noticeable_scales(*(np.asarray(matrix) for matrix in linearised(model, equilibrium(model))), spread)
     candidates = tuple(catalogue(model, scales, waves, size**2)[0])
     return model, candidates, scales, Seas(10.0 * size**0.5) if waves else None
 
@@ -102,15 +103,15 @@ CASES = ("semisubmersible", "full scale", "model scale", "decays only", "one mot
 @pytest.mark.parametrize("name", CASES)
 def test_every_amplitude_has_a_range_about_its_neutral_value(name):
     """Within the bounds of its load, one-sided where physics is, with a source; no other label."""
-    candidates, found = case(name)[1], ranges(name)
-    assert set(found) == {label for one in candidates for label in one.amplitudes}
-    for one in candidates:
-        for label in one.amplitudes:
-            size, about = found[label], with_all(name).about(label)
+    candidates, sizes = case(name)[1], ranges(name)
+    assert set(sizes) == {label for candidate in candidates for label in candidate.amplitudes}
+    for candidate in candidates:
+        for label in candidate.amplitudes:
+            size, about = sizes[label], with_all(name).about(label)
             assert size.lower <= about.neutral <= size.upper and about.neutral in size, label
             assert size.lower < size.upper and np.isfinite([size.lower, size.upper]).all(), label
             assert about.lower <= size.lower and size.upper <= about.upper, label
-            assert label not in one.positive or size.lower == about.neutral, label
+            assert label not in candidate.positive or size.lower == about.neutral, label
             assert size.source.endswith(".") and not size.stated
             assert size.source.startswith(
                 ("engineering judgement: ", "IMO", "Graham", "Maruo", "Aranha", "OpenFAST", "Barrass")
@@ -135,10 +136,10 @@ def test_the_highest_sea_counts():
         return SimpleNamespace(kind=kind, use=use, time=time, wave=wave)
 
     records = [record("irregular", "fit", 0.2, 8.0), record("irregular", "holdout", 0.9, 10.0)]
-    others = [record("decay", "fit", 9.0, 4.0), record("regular", "ignore", 9.0, 5.0), record("regular", "fit", 0.0, None)]
-    assert Seas.of([*records, *others], low=0.03).peak_period == pytest.approx(10.0, rel=0.01)
+    uncounted = [record("decay", "fit", 9.0, 4.0), record("regular", "ignore", 9.0, 5.0), record("regular", "fit", 0.0, None)]
+    assert Seas.of([*records, *uncounted], low=0.03).peak_period == pytest.approx(10.0, rel=0.01)
     assert Seas.of(records).peak_period > 20.0  # s, with the slow waves below that band
-    assert Seas.of(others) is None
+    assert Seas.of(uncounted) is None
 
 
 def test_by_froude_a_model_has_the_same_numbers():
@@ -155,26 +156,26 @@ def test_by_froude_a_model_has_the_same_numbers():
 
 def test_sizes_of_a_semisubmersible():
     """Of 20 000 t: what the sources say, in numbers."""
-    found = ranges("semisubmersible")
-    point = found["sensor_reference.z"]
+    sizes = ranges("semisubmersible")
+    point = sizes["sensor_reference.z"]
     assert (point.lower, point.upper) == pytest.approx((-23.5, 18.5))  # m: keel and deck, and a tenth of 35 m beyond
-    assert found["mass_properties.mass"].upper == pytest.approx(0.02 * float(case("semisubmersible")[0].body.mass))
-    assert found["mass_properties.centre_z"].upper == pytest.approx(0.5, rel=0.01)
-    assert found["wave_gauge_position.distance"].upper == pytest.approx(8.0, rel=0.01)
-    assert found["wave_drift.surge.envelope"].upper == pytest.approx(0.5 * 1025 * 9.81 * 27, rel=0.02)
-    assert (found["wave_excitation.column.Cp_t"].lower, found["wave_excitation.column.Cp_t"].upper) == (0.6, 1.4)
-    assert -1 / 3 in found["amplitude_dependent_drag.column.exponent"]
-    assert 1.5 not in found["sea_state_dependent_drag.low_share"]
-    friction, scales = found["coulomb_friction.surge.force"], case("semisubmersible")[2]["surge"]
+    assert sizes["mass_properties.mass"].upper == pytest.approx(0.02 * float(case("semisubmersible")[0].body.mass))
+    assert sizes["mass_properties.centre_z"].upper == pytest.approx(0.5, rel=0.01)
+    assert sizes["wave_gauge_position.distance"].upper == pytest.approx(8.0, rel=0.01)
+    assert sizes["wave_drift.surge.envelope"].upper == pytest.approx(0.5 * 1025 * 9.81 * 27, rel=0.02)
+    assert (sizes["wave_excitation.column.Cp_t"].lower, sizes["wave_excitation.column.Cp_t"].upper) == (0.6, 1.4)
+    assert -1 / 3 in sizes["amplitude_dependent_drag.column.exponent"]
+    assert 1.5 not in sizes["sea_state_dependent_drag.low_share"]
+    friction, scales = sizes["coulomb_friction.surge.force"], case("semisubmersible")[2]["surge"]
     assert friction.upper == pytest.approx(0.1 * 2.5 * scales.force / 0.02)  # of the force at 2.5 times the amplitude
 
 
 def test_terms_of_the_equation_have_ranges_too():
     """Linear damping, stiffness and added mass, on and beside the diagonal, whether the catalogue has them or not."""
-    known = Case(case("decays only")[0], case("decays only")[2], None)
+    reference = Case(case("decays only")[0], case("decays only")[2], None)
     terms = {"linear_damping": "B", "quadratic_damping": "B", "stiffness": "C", "added_mass": "A"}
     for term, letter in terms.items():
-        own, beside = (reach_of(known, f"{term}.{letter}{entry}") for entry in ("11", "15"))
+        own, beside = (reach_of(reference, f"{term}.{letter}{entry}") for entry in ("11", "15"))
         assert own.above > 0 and own.whole > 0
         assert -beside.below == beside.above > 0
         assert own.below == (0.0 if letter == "B" else -own.above)  # damping takes energy
@@ -206,8 +207,8 @@ def test_of_ones_own_effect():
     """As many noticeable sizes as its prior has had, within its bounds; or as stated."""
     model, _, scales, _ = case("decays only")
     own = Candidate("spring", None, ("spring.k", "spring.slant"), load=Spring(), sizes={"spring.k": 10.0, "spring.slant": 2.0})
-    found = plausible_sizes(model, [own], scales, None, {})
-    assert [(found[k].lower, found[k].upper) for k in own.amplitudes] == [(0.0, 300.0), (-60.0, 60.0)]
+    sizes = plausible_sizes(model, [own], scales, None, {})
+    assert [(sizes[k].lower, sizes[k].upper) for k in own.amplitudes] == [(0.0, 300.0), (-60.0, 60.0)]
 
 
 def test_a_label_that_no_rule_knows_is_an_error():
@@ -224,11 +225,11 @@ def test_a_short_key_has_the_units_of_its_labels(key):
     tables = ("computed_excitation", "computed_radiation", "computed_added_mass", "diffraction_correction", "drift_transfer")
     later = ("linear_damping", "stiffness", "added_mass", *tables)
     assert labels or key in later
-    found = {parse_unit(with_all("semisubmersible").about(label).unit).powers for label in labels}
-    assert not units or found <= units
+    powers = {parse_unit(with_all("semisubmersible").about(label).unit).powers for label in labels}
+    assert not units or powers <= units
     if labels and "%" in STATED_SIZES[key][1]:
         model, candidates, scales, seas = case("semisubmersible")
-        concerned = [one for one in candidates if set(labels) & set(one.amplitudes)]
+        concerned = [candidate for candidate in candidates if set(labels) & set(candidate.amplitudes)]
         assert any(size.stated for size in plausible_sizes(model, concerned, scales, seas, {key: "5 %"}).values())
 
 
@@ -251,7 +252,7 @@ def test_stated_sizes_take_the_place_of_ours():
         "hysteresis.surge.force": "3 kN",
         "hysteresis": "1 %",
     }
-    mine, found = ranges("full scale"), ranges("full scale", **stated)
+    ours, stated_sizes = ranges("full scale"), ranges("full scale", **stated)
     model = case("full scale")[0]
     expected = {
         "mass_properties.mass": (-0.03 * float(model.body.mass), 0.03 * float(model.body.mass)),
@@ -264,20 +265,20 @@ def test_stated_sizes_take_the_place_of_ours():
         "current.x": (-0.1, 0.1),
         "coulomb_friction.surge.force": (0.0, 5e4),
         "coulomb_friction.heave.force": (0.0, 5e4),
-        "coulomb_friction.roll.force": (0.0, 0.5 * mine["coulomb_friction.roll.force"].upper),
+        "coulomb_friction.roll.force": (0.0, 0.5 * ours["coulomb_friction.roll.force"].upper),
         "wave_drift.surge.envelope": (-1e5, 1e5),
         "wave_excitation.hull.Cp_t": (0.9, 1.1),
         "umbilical.pull": (-7.0, 7.0),
         "sea_state_dependent_drag.low_share": (0.5, 1.0),
-        "hysteresis.pitch.force": (0.0, mine["hysteresis.pitch.force"].upper / 15),
+        "hysteresis.pitch.force": (0.0, ours["hysteresis.pitch.force"].upper / 15),
         "hysteresis.surge.force": (0.0, 3e3),
     }
     for label, (lower, upper) in expected.items():
-        assert_allclose([found[label].lower, found[label].upper], [lower, upper], rtol=1e-9, err_msg=label)
-        assert found[label].stated and found[label].source.startswith("stated in campaign.yaml, plausible.")
-    assert found["coulomb_friction.pitch.force"] == mine["coulomb_friction.pitch.force"]  # a moment is no force
-    assert found["wave_drift.surge.quadrature"] == mine["wave_drift.surge.quadrature"]
-    assert found["hysteresis.surge.force"].source == "stated in campaign.yaml, plausible.hysteresis.surge.force."
+        assert_allclose([stated_sizes[label].lower, stated_sizes[label].upper], [lower, upper], rtol=1e-9, err_msg=label)
+        assert stated_sizes[label].stated and stated_sizes[label].source.startswith("stated in campaign.yaml, plausible.")
+    assert stated_sizes["coulomb_friction.pitch.force"] == ours["coulomb_friction.pitch.force"]  # a moment is no force
+    assert stated_sizes["wave_drift.surge.quadrature"] == ours["wave_drift.surge.quadrature"]
+    assert stated_sizes["hysteresis.surge.force"].source == "stated in campaign.yaml, plausible.hysteresis.surge.force."
 
 
 def test_what_is_no_candidate_may_be_stated():

@@ -101,7 +101,7 @@ FREE = {
     "strongly damped": motion(np.exp(-0.15 * W * STEP * np.arange(900)) * np.cos(W * STEP * np.arange(900))),
     "with a slow motion": motion(DECAY + 0.2 * np.cos(W / 4 * STEP * np.arange(900) + 1)),
     "with a fast motion": motion(DECAY + 0.1 * np.cos(3.3 * W * STEP * np.arange(900) + 1)),
-    "with a gap": tuple(np.delete(one, np.s_[200:240]) for one in motion(DECAY)),
+    "with a gap": tuple(np.delete(samples, np.s_[200:240]) for samples in motion(DECAY)),
 }
 
 
@@ -129,31 +129,35 @@ def campaign(folder, time, motions, wave=None, **test):
 
 
 def test_what_was_left_out_is_told_once_with_its_time(tmp_path):
-    told, record = campaign(tmp_path, *motion(held(10), DECAY[:400], held(40, AT_END)))
-    assert len(told) == 2
-    assert told[0].startswith("stands still at -3.4") and "until 10" in told[0] and "a `window` that begins later" in told[0]
-    assert told[1].startswith("is held again after 49.") and "`window` overrides this" in told[1]
+    warnings, record = campaign(tmp_path, *motion(held(10), DECAY[:400], held(40, AT_END)))
+    assert len(warnings) == 2
+    assert (
+        warnings[0].startswith("stands still at -3.4")
+        and "until 10" in warnings[0]
+        and "a `window` that begins later" in warnings[0]
+    )
+    assert warnings[1].startswith("is held again after 49.") and "`window` overrides this" in warnings[1]
     assert 10 <= record.time[0] < 10.6 and 48.5 < record.time[-1] < 50.2
 
 
 def test_a_window_is_respected_and_a_hold_in_it_is_found(tmp_path):
     parts = motion(held(10), DECAY[:400], held(40, AT_END))
-    told, record = campaign(tmp_path, *parts, window=[5, 80])
-    assert "until 10" in told[0] and "`window` includes this" in told[1]
+    warnings, record = campaign(tmp_path, *parts, window=[5, 80])
+    assert "until 10" in warnings[0] and "`window` includes this" in warnings[1]
     assert 10 <= record.time[0] < 10.6 and record.time[-1] == pytest.approx(80)
-    told, record = campaign(tmp_path, *parts, window=[12, 48])
-    assert told == [] and record.time[0] == pytest.approx(12)
+    warnings, record = campaign(tmp_path, *parts, window=[12, 48])
+    assert warnings == [] and record.time[0] == pytest.approx(12)
 
 
 def test_waves_in_a_decay_are_told(tmp_path):
     t, x = motion(DECAY)
     wave = 0.05 * np.cos(2 * np.pi * t / 2.3) + 0.0005 * RNG.normal(size=len(t))
-    told, _ = campaign(tmp_path, t, x, wave)
-    assert len(told) == 1 and told[0].startswith("waves of 2.29")
-    assert "0.1 m high, where a decay should be in still water" in told[0]
+    warnings, _ = campaign(tmp_path, t, x, wave)
+    assert len(warnings) == 1 and warnings[0].startswith("waves of 2.29")
+    assert "0.1 m high, where a decay should be in still water" in warnings[0]
     assert campaign(tmp_path, t, x, 0.01 * DECAY + 0.0005 * RNG.normal(size=len(t)))[0] == []  # its own
-    told, _ = campaign(tmp_path, t, x * np.exp(-t / 15) + 0.3 * np.sin(2 * np.pi * t / 2.3))
-    assert [message[:40] for message in told] == ["its last third oscillates by 0.3 m in 2."]
+    warnings, _ = campaign(tmp_path, t, x * np.exp(-t / 15) + 0.3 * np.sin(2 * np.pi * t / 2.3))
+    assert [message[:40] for message in warnings] == ["its last third oscillates by 0.3 m in 2."]
 
 
 def sea(first, last, duration=400.0, period=4.0):

@@ -96,12 +96,12 @@ def test_groups_have_the_products_of_their_residuals(residuals, kind: str) -> No
     """One group of products for each group of residuals; with a tail every residual counts less."""
     problem, at, _ = residuals[kind]
     assert isinstance(problem, AbstractGroupedResidual)
-    groups = eqx.filter_jit(lambda one, x: one.residuals(x))(problem, at.shared)
-    products = np.asarray(eqx.filter_jit(lambda one, z: one.products(z))(problem, at))
+    groups = eqx.filter_jit(lambda grouped, x: grouped.residuals(x))(problem, at.shared)
+    products = np.asarray(eqx.filter_jit(lambda grouped, z: grouped.products(z))(problem, at))
     assert_allclose(products[0, :, -1, -1], [float(group @ group) for group in groups], rtol=1e-9)
     tail = jnp.array([0.5 * float(jnp.abs(group).max()) + 1e-12 for group in groups])
-    tailed = eqx.tree_at(lambda one: one.tail, problem, tail, is_leaf=lambda leaf: leaf is None)
-    less = np.asarray(eqx.filter_jit(lambda one, z: one.products(z))(tailed, at))
+    tailed = eqx.tree_at(lambda grouped: grouped.tail, problem, tail, is_leaf=lambda leaf: leaf is None)
+    less = np.asarray(eqx.filter_jit(lambda grouped, z: grouped.products(z))(tailed, at))
     assert (less[0, :, -1, -1] < products[0, :, -1, -1]).all()
 
 
@@ -144,6 +144,6 @@ def test_bands_that_are_met_exactly_determine_no_more_parameters_than_bands() ->
     fit = Fit([SeaPart(lambda _: problem, hull, pooled=True)], parameters_only(problem.space.start))
     fit.run_rounds("round {}", 6, 1e-4)
     assert fit.converged and np.abs(problem.residuals(fit.x)[0]).max() < 1e-3
-    spread, found = fit.uncertainty("two bands")
+    spread, findings = fit.uncertainty("two bands")
     assert np.sqrt(np.linalg.eigvalsh(spread.covariance)[-1]) == pytest.approx(VAGUE_DEVIATION, rel=0.01)
-    assert (found.spectrum < 0.25).sum() == 2 and len(found.weak) == 1
+    assert (findings.spectrum < 0.25).sum() == 2 and len(findings.weak) == 1

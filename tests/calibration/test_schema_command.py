@@ -41,5 +41,5 @@ def test_a_wrong_key_is_marked(schema):
 def test_an_unknown_file_is_refused():
     for word, hint in (("sea", ""), ("campain", ". Did you mean 'campaign'?")):
         result = CliRunner().invoke(cli.app, ["schema", word])
-        said = " ".join(result.stderr.split())
-        assert result.exit_code == 2 and said.endswith(f"expected campaign or platform, found '{word}'{hint}")
+        message = " ".join(result.stderr.split())
+        assert result.exit_code == 2 and message.endswith(f"expected campaign or platform, found '{word}'{hint}")

@@ -70,18 +70,18 @@ def test_cells_of_a_band_are_as_narrow_as_the_record_allows(duration: float, cel
     whole, parts = (energies_of(x, step, 0.005, 0.025, cut) for cut in (False, True))
     assert parts.measured.shape == (cells,)
     assert np.asarray(parts.measured).sum() == pytest.approx(np.asarray(whole.measured)[0], rel=1e-12)
-    other = energies_of(x, step, 0.06, 0.15, True)
-    found = one_program(BandEnergies.of)(joined_bands([parts, other]), x)
-    assert_allclose(found, np.concatenate([parts.measured, other.measured]), rtol=1e-12)
+    second = energies_of(x, step, 0.06, 0.15, True)
+    joined = one_program(BandEnergies.of)(joined_bands([parts, second]), x)
+    assert_allclose(joined, np.concatenate([parts.measured, second.measured]), rtol=1e-12)
 
 
 def test_cells_without_energy_are_left_out() -> None:
     """Of a motion with one frequency and a sensor's noise one cell is left, that of the frequency."""
     step, time = 0.5, np.arange(0.0, 3600.0, 0.5)
     x = np.sin(2 * np.pi * 0.0064 * time) + 1e-3 * np.random.default_rng(3).normal(size=time.size)
-    whole, kept = (energies_of(x, step, 0.005, 0.025, cut) for cut in (False, True))
-    assert kept.measured.shape == (1,)
-    assert float(kept.measured[0]) == pytest.approx(float(whole.measured[0]), rel=MIN_ENERGY_SHARE)
+    whole, with_cut = (energies_of(x, step, 0.005, 0.025, cut) for cut in (False, True))
+    assert with_cut.measured.shape == (1,)
+    assert float(with_cut.measured[0]) == pytest.approx(float(whole.measured[0]), rel=MIN_ENERGY_SHARE)
 
 
 @pytest.mark.slow
@@ -107,7 +107,7 @@ def test_gradient_through_a_sea_and_its_spectra(problem) -> None:
     x = problem.space.start + jnp.array([0.2, -0.3])
     products = np.asarray(eqx.filter_jit(lambda p, x: p.products(parameters_only(x)))(problem, x)).sum(axis=(0, 1))
     pairs = [(stacked(problem, x + d), stacked(problem, x - d)) for d in 1e-4 * np.eye(2)]
-    slopes = np.stack([np.asarray(one - other) / 2e-4 for one, other in pairs], axis=1)
+    slopes = np.stack([np.asarray(ahead - behind) / 2e-4 for ahead, behind in pairs], axis=1)
     r = np.asarray(stacked(problem, x))
     assert_allclose(products[:2, 2], slopes.T @ r, rtol=1e-4)
     assert_allclose(products[:2, :2], slopes.T @ slopes, rtol=1e-4)
@@ -116,22 +116,22 @@ def test_gradient_through_a_sea_and_its_spectra(problem) -> None:
 
 @pytest.fixture(scope="module")
 def fitted(campaign):
-    said = []
+    reports = []
     result = calibrate_in_waves(
-        campaign, free=LABELS, start=start_of(campaign), objective="both", options=OPTIONS, progress=said.append
+        campaign, free=LABELS, start=start_of(campaign), objective="both", options=OPTIONS, progress=reports.append
     )
-    return result, said, build(campaign.platform).values
+    return result, reports, build(campaign.platform).values
 
 
 @pytest.mark.slow
 def test_coefficients_of_a_made_run_are_found_back(fitted) -> None:
     """Two drag coefficients of the NumPy model, within 3 % or two of their deviations; the held-out sea is met too."""
-    result, said, true = fitted
-    assert result.converged and said[-1].name == "error" and said[-1].objective < 0.3 * said[1].objective
+    result, reports, true = fitted
+    assert result.converged and reports[-1].name == "error" and reports[-1].objective < 0.3 * reports[1].objective
     for label in LABELS:
-        one = result.parameters[label]
-        assert one.identifiable
-        assert abs(one.value - float(true[label])) < max(0.03 * float(true[label]), 2 * one.standard_deviation), label
+        estimate = result.parameters[label]
+        assert estimate.identifiable
+        assert abs(estimate.value - float(true[label])) < max(0.03 * float(true[label]), 2 * estimate.standard_deviation), label
     tests = {test.id: test for test in result.tests}
     assert set(tests) == {"sea-a", "sea-b", "wave"} and result.objective("holdout") < 0.1
     for band in tests["sea-b"].bands["surge"].values():
@@ -144,18 +144,18 @@ def test_spectra_find_them_back_too(campaign) -> None:
     result = calibrate_in_waves(campaign, free=LABELS, start=start_of(campaign), objective="spectrum", options=OPTIONS)
     true = build(campaign.platform).values
     for label in LABELS:
-        one = result.parameters[label]
-        assert one.identifiable
-        assert abs(one.value - float(true[label])) < max(0.03 * float(true[label]), 2 * one.standard_deviation), label
+        estimate = result.parameters[label]
+        assert estimate.identifiable
+        assert abs(estimate.value - float(true[label])) < max(0.03 * float(true[label]), 2 * estimate.standard_deviation), label
 
 
 @pytest.mark.slow
 def test_what_is_written(fitted, tmp_path) -> None:
     result, _, _ = fitted
     content = document(result).model_dump(exclude_unset=True)
-    found = content["baseline"]["error"]
-    assert set(found["sea-a"]["bands"]) == set(content["tests"]["sea-a"]["bands_before"]) == {"surge", "heave", "pitch"}
-    assert "bands" not in found["wave"]
+    errors = content["baseline"]["error"]
+    assert set(errors["sea-a"]["bands"]) == set(content["tests"]["sea-a"]["bands_before"]) == {"surge", "heave", "pitch"}
+    assert "bands" not in errors["wave"]
     write_calibration(result, tmp_path / "o")
     saved = json.loads((tmp_path / "o" / "calibration.json").read_text())
     assert {figure["file"] for figure in saved["figures"]} >= {"figures/spectra-sea-a.png", "figures/test-wave.png"}
@@ -167,8 +167,8 @@ def test_messages(campaign, made, tmp_path) -> None:  # noqa: F811
         calibrate(campaign)
     with pytest.raises(InputError, match="a parameter of this platform"):
         calibrate_in_waves(campaign, free=["colunm.Cd_t"], options=OPTIONS)
-    said = run("calibrate", made, "--tests", "decays", "--out", tmp_path / "o", status=2)
-    assert "at least one decay test" in said
+    message = run("calibrate", made, "--tests", "decays", "--out", tmp_path / "o", status=2)
+    assert "at least one decay test" in message
 
     def stop(now) -> None:
         if now.iteration == 2:

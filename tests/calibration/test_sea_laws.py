@@ -103,10 +103,10 @@ def campaign(tmp_path_factory):
     true = with_sea_state_laws(model, LABELS, ("significant_height",), reference_sea_state(made, OPTIONS)).with_values(TRUE)
     ((run, sea),) = made
     motion = np.zeros((len(time), 6))
-    for part, found, _ in simulate_segments(
+    for part, segment, _ in simulate_segments(
         true, run, run_segments(run, run.records, true, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25
     ):
-        motion[part.begin : part.end + 1] = np.asarray(found.response.position)
+        motion[part.begin : part.end + 1] = np.asarray(segment.response.position)
     motion -= np.asarray(jh.equilibrium(model))
     (folder / "sea.csv").write_text(rows(time, np.stack([wave, *(motion[:, DOFS.index(d)] for d in HEADS.split(",")[2:])])))
     return load_campaign(folder)
@@ -133,11 +133,11 @@ def test_stretches_of_a_run(campaign, made) -> None:
         assert part.state.significant_height == pytest.approx(4 * np.std(seen), rel=0.02)
         assert part.state.peak_period == pytest.approx(10.0, rel=0.15)  # 32 waves
         assert part.state == sea_state(run, part.records[0], *options)
-    one = next(iter(simulate_segments(model, run, (whole,), sea.sea, 0.25))).simulation.response.position
-    for part, found, start in simulate_segments(law, run, parts, sea.sea, 0.25):
+    whole_path = next(iter(simulate_segments(model, run, (whole,), sea.sea, 0.25))).simulation.response.position
+    for part, segment, start in simulate_segments(law, run, parts, sea.sea, 0.25):
         assert (start is None) == (part.begin == 0)
-        there = np.asarray(one[part.begin : part.end + 1])
-        assert_allclose(np.asarray(found.response.position), there, atol=2e-3 * np.abs(there).max())
+        expected = np.asarray(whole_path[part.begin : part.end + 1])
+        assert_allclose(np.asarray(segment.response.position), expected, atol=2e-3 * np.abs(expected).max())
 
 
 def start_of(campaign) -> dict[str, float]:
@@ -173,7 +173,7 @@ def calls() -> list[tuple]:
 
 
 @pytest.fixture(scope="module")
-def found(campaign, fitted, calls):
+def choice(campaign, fitted, calls):
     """`choose_law` with calibrations that are not made anew: constants that are off in other seas, and one sea alone."""
     model = with_diffraction(build(campaign.platform), OPTIONS)
 
@@ -184,14 +184,14 @@ def found(campaign, fitted, calls):
         if over:
             return fitted
         alone = list(uses.values()).count("fit") == 1
-        one = replace(fitted.parameters["column.Cd_t"], value=1.0 if alone else 1.5)
+        estimate = replace(fitted.parameters["column.Cd_t"], value=1.0 if alone else 1.5)
         worse = [
             replace(t, bands={c: {k: v._replace(after=-0.4) for k, v in row.items()} for c, row in t.bands.items()})
             for t in fitted.tests
         ]
-        return replace(fitted, model=model, parameters={"column.Cd_t": one}, tests=tuple(worse))
+        return replace(fitted, model=model, parameters={"column.Cd_t": estimate}, tests=tuple(worse))
 
-    said = []
+    reports = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("calibration.fitting.law_choice.calibrate_in_waves", fake)
         laws = choose_law(
@@ -200,27 +200,27 @@ def found(campaign, fitted, calls):
             free=LABELS,
             options=OPTIONS,
             start=start_of(campaign),
-            progress=said.append,
+            progress=reports.append,
         )
-    return laws, said
+    return laws, reports
 
 
-def test_what_is_fitted_and_what_judges(campaign, found, calls) -> None:
+def test_what_is_fitted_and_what_judges(campaign, choice, calls) -> None:
     """Constants from the start, a law from where they ended, every sea alone; the sea held out chooses."""
-    laws, said = found
+    laws, reports = choice
     assert laws.judged_by == ("sea-2",) and not laws.left_out and laws.chosen.name == "significant_height"
     assert laws.laws[0].held_out == pytest.approx(-np.log(0.6))
-    uses, starts, overs, there = zip(*calls, strict=True)
+    uses, starts, overs, tests = zip(*calls, strict=True)
     assert overs == ((), ("significant_height",), (), (), ())
     assert starts[0] == start_of(campaign) and starts[1:] == ({"column.Cd_t": 1.5},) * 4
     assert uses[:2] == ({"sea-1": "fit", "sea-2": "holdout", "sea-3": "fit"},) * 2
     assert [[id for id, use in row.items() if use == "fit"] for row in uses[2:]] == [["sea-1"], ["sea-3"], ["sea-2"]]
-    assert there[1] == ["sea-1", "sea-2", "sea-3"] and there[4] == ["sea-2"]
+    assert tests[1] == ["sea-1", "sea-2", "sea-3"] and tests[4] == ["sea-2"]
     assert {sea.id: sea.use for sea in laws.seas} == {"sea-1": "fit", "sea-3": "fit", "sea-2": "holdout"}
-    fractions = [now.fraction for now in said]
+    fractions = [now.fraction for now in reports]
     assert fractions == sorted(fractions) and 0.8 < fractions[-1] <= 1
     jobs = ["constant", "significant_height", "sea-1 alone", "sea-3 alone", "sea-2 alone"]
-    assert [now.stage.split(":")[0] for now in said] == [f"{i} of 5, {job}" for i, job in enumerate(jobs, 1)]
+    assert [now.stage.split(":")[0] for now in reports] == [f"{i} of 5, {job}" for i, job in enumerate(jobs, 1)]
 
 
 @pytest.mark.parametrize("made_before", [0, 1, 3])
@@ -248,18 +248,18 @@ def test_laws_that_are_stopped(campaign, fitted, made_before: int) -> None:
 
 def test_seas_left_out_in_turn(campaign, fitted) -> None:
     """Where none is held out, every fitted sea judges the fit to the others."""
-    every = replace(campaign, records=tuple(replace(r, use="fit") for r in campaign.records))
-    left = []
+    all_fitted = replace(campaign, records=tuple(replace(r, use="fit") for r in campaign.records))
+    held_out = []
 
     def fake(used, *, over, **_):
-        left.append((over, [r.id for r in used.records if r.use == "holdout"]))
+        held_out.append((over, [r.id for r in used.records if r.use == "holdout"]))
         return fitted
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("calibration.fitting.law_choice.calibrate_in_waves", fake)
-        laws = choose_law(every, laws=("constant", "significant_height"), options=OPTIONS)
+        laws = choose_law(all_fitted, laws=("constant", "significant_height"), options=OPTIONS)
     assert laws.left_out and laws.judged_by == ("sea-1", "sea-2", "sea-3") and laws.chosen.name == "constant"
-    assert [held for over, held in left if over] == [[], ["sea-1"], ["sea-2"], ["sea-3"]]
+    assert [held for over, held in held_out if over] == [[], ["sea-1"], ["sea-2"], ["sea-3"]]
 
 
 @pytest.mark.validate
@@ -281,14 +281,14 @@ def test_the_law_that_made_the_records_is_chosen(campaign) -> None:
 
 
 def reference(law: LawFit) -> SeaState:
-    found = reference_of_loads(law.calibration.model.loads)
-    assert found is not None
-    return found
+    state = reference_of_loads(law.calibration.model.loads)
+    assert state is not None
+    return state
 
 
-def test_what_is_written_and_used_again(campaign, found, tmp_path) -> None:
+def test_what_is_written_and_used_again(campaign, choice, tmp_path) -> None:
     """A table, a figure, and a calibration.json whose exponents another model takes on."""
-    laws, _ = found
+    laws, _ = choice
     write_calibration(laws.chosen.calibration, tmp_path, figures=False)
     write_laws(laws, tmp_path)
     written = json.loads((tmp_path / "sea_laws.json").read_text())
@@ -343,9 +343,9 @@ def test_a_law_of_drag_begins_as_plain_drag(campaign, made, drag) -> None:
 def test_a_law_of_drag_is_written_and_used_again(campaign, fitted, drag, tmp_path) -> None:
     """With its constants; another platform's own is not replaced by one that has others."""
     changed, added, name = drag
-    one = replace(fitted.parameters["column.Cd_t"], value=0.7)
+    estimate = replace(fitted.parameters["column.Cd_t"], value=0.7)
     model = changed.with_values(dict.fromkeys(added, 0.7))
-    calibration = replace(fitted, model=model, parameters={added[0]: one, "column.Cd_t": one})
+    calibration = replace(fitted, model=model, parameters={added[0]: estimate, "column.Cd_t": estimate})
     write_calibration(calibration, tmp_path, figures=False)
     law = json.loads((tmp_path / "calibration.json").read_text())["baseline"]["drag_laws"]["column.Cd_t"]
     assert law["law"] == name
@@ -353,16 +353,16 @@ def test_a_law_of_drag_is_written_and_used_again(campaign, fitted, drag, tmp_pat
     assert used.values == {added[0]: 0.7, "column.Cd_t": 0.7}
     assert {k: v.law for k, v in drag_laws_of(used.model).items()} == dict.fromkeys(ALL_DRAG, name)
     assert float(used.model.values[added[0]]) == 0.7
-    again = apply_calibration(tmp_path, changed, campaign.platform.name).model.values
-    assert {k: float(again[k]) for k in added} == {k: float(changed.values[k]) for k in added} | {added[0]: 0.7}  # as declared
+    values = apply_calibration(tmp_path, changed, campaign.platform.name).model.values
+    assert {k: float(values[k]) for k in added} == {k: float(changed.values[k]) for k in added} | {added[0]: 0.7}  # as declared
     data = json.loads((tmp_path / "calibration.json").read_text())
-    for change, said in (
+    for change, pattern in (
         ({"drag_laws": {"colum.Cd_t": law}}, r"baseline\.drag_laws: expected drag coefficients .*'colum\.Cd_t'.*column\.Cd_t"),
         ({"parameters": {}}, r"baseline\.parameters: expected at least one calibrated parameter"),
         ({"parameters": {"column.Cd_t": {"value": -1.0, "unit": "-"}}}, r"value: expected a number between 0 and 30, found -1"),
     ):
         (tmp_path / "calibration.json").write_text(json.dumps(data | {"baseline": data["baseline"] | change}))
-        with pytest.raises(InputError, match=said):
+        with pytest.raises(InputError, match=pattern):
             apply_calibration(tmp_path, build(campaign.platform), campaign.platform.name)
     plain = {key: value for key, value in data["baseline"].items() if key != "drag_laws"}
     plain["parameters"] = {"column.Cd_t": data["baseline"]["parameters"]["column.Cd_t"]}
@@ -371,9 +371,11 @@ def test_a_law_of_drag_is_written_and_used_again(campaign, fitted, drag, tmp_pat
     with pytest.raises(InputError, match=r"drag_laws\.column\.Cd_t: expected the law that .* found plain drag"):
         apply_calibration(tmp_path, model, campaign.platform.name)
     (tmp_path / "calibration.json").write_text(json.dumps(data))
-    other = "high_pass" if name == "keulegan_carpenter" else "keulegan_carpenter"
-    declared = with_drag_law(build(campaign.platform), ALL_DRAG, other, SeaState(5.0, 10.0), OPTIONS.low)[0]
-    with pytest.raises(InputError, match=f"baseline.drag_laws.column.Cd_t: expected the law that .*{other}.*found .*{name}"):
+    other_law = "high_pass" if name == "keulegan_carpenter" else "keulegan_carpenter"
+    declared = with_drag_law(build(campaign.platform), ALL_DRAG, other_law, SeaState(5.0, 10.0), OPTIONS.low)[0]
+    with pytest.raises(
+        InputError, match=f"baseline.drag_laws.column.Cd_t: expected the law that .*{other_law}.*found .*{name}"
+    ):
         apply_calibration(tmp_path, declared, campaign.platform.name)
 
 
@@ -384,8 +386,8 @@ def test_a_coefficient_by_laws_of_drag(fitted, drag) -> None:
     plain = float(changed.values["column.Cd_t"])
     value, _ = law.coefficient("column.Cd_t", SeaState(4.0, 10.0))
     number = surface_number(changed.hull, "column.Cd_t", 4.0)
-    there = drag_laws_of(changed)["column.Cd_t"]
-    ratio = (number**2 + 0.01) / (there.reference**2 + 0.01) if name == "keulegan_carpenter" else 1.0
+    surface_law = drag_laws_of(changed)["column.Cd_t"]
+    ratio = (number**2 + 0.01) / (surface_law.reference**2 + 0.01) if name == "keulegan_carpenter" else 1.0
     assert value == pytest.approx(plain * ratio**-0.25)
     assert laws_table(SeaLaws((law,), (), ("sea-2",), False))[1][0][0] == LAW_NAMES[name]
 
@@ -413,8 +415,8 @@ def test_slow_motion_apart_is_found_back(campaign, made, tmp_path) -> None:
     assert laws.chosen.calibration.parameters[added[0]].value == pytest.approx(3.0, rel=0.15)
 
 
-def test_words(found) -> None:
-    laws, _ = found
+def test_words(choice) -> None:
+    laws, _ = choice
     heads, lines = laws_table(laws)
     assert len(heads) == 5 and lines[1][-1] == "chosen" and lines[1][1] == "1"
     heads, lines = states_table(laws)

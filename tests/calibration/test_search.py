@@ -29,14 +29,14 @@ ENOUGH = Budget(seconds=60.0, simulations=3000.0, objective=0.005)  # the noise 
 LABELS = list(SHIP_TRUE)
 
 
-def far_campaign(folder: Path, **more) -> Campaign:
+def far_campaign(folder: Path, **options) -> Campaign:
     """A noisy roll decay of a body without members, its sensor off by OFFSET."""
     time, roll = roll_decay(12.0, 30.0)
     noisy = roll + OFFSET + NOISE * np.random.default_rng(3).standard_normal(len(time))
     tests = {"roll": ({"kind": "decay", "degree_of_freedom": "roll", "use": "fit"}, time, {"roll": noisy})}
     # the declared values are far from the truth, and not in the middle of what is searched
     document = SHIP | {"added_mass": {"A44": 60.0}, "linear_damping": {"B44": 12.0}, "quadratic_damping": {"B44": 5.0}}
-    return load_campaign(write(folder, document, tests, noise={"roll": NOISE}, **more))
+    return load_campaign(write(folder, document, tests, noise={"roll": NOISE}, **options))
 
 
 @pytest.fixture(scope="module")
@@ -55,24 +55,24 @@ def true_objective(campaign: Campaign) -> float:
 
 @pytest.mark.slow
 def test_a_search_finds_the_coefficients(campaign: Campaign) -> None:
-    one = search(campaign, starts=STARTS, seed=1, budget=ENOUGH)
-    assert one.method == "multistart" and one.ended == "reached"
-    assert true_objective(campaign) < one.objective <= ENOUGH.objective
-    assert set(one.values) == set(SHIP_TRUE)
-    period = [jh.natural_modes(model_of(SHIP, values)).of("roll") for values in (one.values, SHIP_TRUE)]
+    best = search(campaign, starts=STARTS, seed=1, budget=ENOUGH)
+    assert best.method == "multistart" and best.ended == "reached"
+    assert true_objective(campaign) < best.objective <= ENOUGH.objective
+    assert set(best.values) == set(SHIP_TRUE)
+    period = [jh.natural_modes(model_of(SHIP, values)).of("roll") for values in (best.values, SHIP_TRUE)]
     assert period[0] == pytest.approx(period[1], rel=2e-3)
-    assert one.values["quadratic_damping.B44"] == pytest.approx(SHIP_TRUE["quadratic_damping.B44"], rel=0.2)
-    check_history(one)
+    assert best.values["quadratic_damping.B44"] == pytest.approx(SHIP_TRUE["quadratic_damping.B44"], rel=0.2)
+    check_history(best)
 
 
-def check_history(one: Found) -> None:
+def check_history(best: Found) -> None:
     """It falls, and ends where the search did."""
-    history = one.history
-    assert (np.diff(history.objective) <= 0).all() and history.objective[-1] == one.objective
-    assert (np.diff(history.simulations) >= 0).all() and history.simulations[-1] == one.simulations
-    assert (np.diff(history.seconds) >= 0).all() and history.seconds[-1] == one.seconds
-    assert history.until(one.objective) == (history.simulations[-2], history.seconds[-2])
-    assert history.until(0.5 * one.objective) is None
+    history = best.history
+    assert (np.diff(history.objective) <= 0).all() and history.objective[-1] == best.objective
+    assert (np.diff(history.simulations) >= 0).all() and history.simulations[-1] == best.simulations
+    assert (np.diff(history.seconds) >= 0).all() and history.seconds[-1] == best.seconds
+    assert history.until(best.objective) == (history.simulations[-2], history.seconds[-2])
+    assert history.until(0.5 * best.objective) is None
 
 
 @pytest.mark.slow
@@ -81,35 +81,35 @@ def test_the_same_seed_gives_the_same_search_and_leaves_others_chance_alone(camp
         return np.random.get_state()[1].copy()  # noqa: NPY002
 
     budget, before = Budget(math.inf, 400.0), state()
-    one, same, other = (search(campaign, starts=STARTS, seed=seed, budget=budget) for seed in (7, 7, 8))
-    assert one.values == same.values and one.objective == same.objective and one.simulations == same.simulations
-    assert one.values != other.values and one.ended == "budget" and 400 <= one.simulations < 400 + 36
+    first, same, other_seed = (search(campaign, starts=STARTS, seed=seed, budget=budget) for seed in (7, 7, 8))
+    assert first.values == same.values and first.objective == same.objective and first.simulations == same.simulations
+    assert first.values != other_seed.values and first.ended == "budget" and 400 <= first.simulations < 400 + 36
     np.testing.assert_array_equal(state(), before)
 
 
 @pytest.mark.slow
 def test_a_budget_of_seconds_ends_a_search(campaign: Campaign) -> None:
-    one = search(campaign, starts=STARTS, finalists=STARTS, seed=2, budget=Budget(1.0))
-    assert one.ended == "budget" and 1.0 <= one.seconds < 2.0
+    best = search(campaign, starts=STARTS, finalists=STARTS, seed=2, budget=Budget(1.0))
+    assert best.ended == "budget" and 1.0 <= best.seconds < 2.0
 
 
 @pytest.mark.slow
 def test_multi_start_settles_where_the_truth_is(campaign: Campaign) -> None:
-    said: list[Progress] = []
-    one = search(campaign, starts=STARTS, finalists=1, seed=3, progress=said.append)
-    assert one.ended == "settled" and one.objective == pytest.approx(true_objective(campaign), rel=1e-3)
-    assert said[-1].stage == "start 1 of 1: noise level" and said[-1].objective == one.objective
-    model = jh.build(campaign.platform).with_values(one.values)  # what `calibrate(start=...)` begins from
+    reports: list[Progress] = []
+    best = search(campaign, starts=STARTS, finalists=1, seed=3, progress=reports.append)
+    assert best.ended == "settled" and best.objective == pytest.approx(true_objective(campaign), rel=1e-3)
+    assert reports[-1].stage == "start 1 of 1: noise level" and reports[-1].objective == best.objective
+    model = jh.build(campaign.platform).with_values(best.values)  # what `calibrate(start=...)` begins from
     assert jh.natural_modes(model).of("roll") == pytest.approx(jh.natural_modes(model_of(SHIP, SHIP_TRUE)).of("roll"), rel=1e-3)
 
 
 @pytest.mark.slow
 def test_ctrl_c_gives_what_was_reached(campaign: Campaign) -> None:
-    said: list[Progress] = []
+    reports: list[Progress] = []
 
     def stop(p: Progress) -> None:
-        said.append(p)
-        if sum(math.isfinite(p.objective) for p in said) == 2:
+        reports.append(p)
+        if sum(math.isfinite(p.objective) for p in reports) == 2:
             raise KeyboardInterrupt
 
     with pytest.raises(SearchInterrupted) as caught:
@@ -117,7 +117,7 @@ def test_ctrl_c_gives_what_was_reached(campaign: Campaign) -> None:
     partial = caught.value.partial
     assert partial is not None and partial.ended == "interrupted" and math.isfinite(partial.objective)
     assert set(partial.values) == set(SHIP_TRUE)
-    assert all(p.stage and 0 <= p.fraction <= 1 for p in said)
+    assert all(p.stage and 0 <= p.fraction <= 1 for p in reports)
 
 
 def test_ctrl_c_before_anything_is_reached(campaign: Campaign) -> None:

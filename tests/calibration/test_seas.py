@@ -70,8 +70,8 @@ def write(folder, text=None, sea=None, **changes):
     """A campaign's folder; `sea` is the text of sea.csv."""
     (folder / "platform.yaml").write_text(HULL.read_text() if text is None else text)
     (folder / "campaign.yaml").write_text(json.dumps(document(**changes)))
-    rest = np.random.default_rng(1).normal(scale=1e-5, size=(200, 4)) + [OFFSETS[c] for c in "wxzp"]
-    (folder / "rest.csv").write_text(rows(np.arange(200) * 0.05, rest))
+    at_rest = np.random.default_rng(1).normal(scale=1e-5, size=(200, 4)) + [OFFSETS[c] for c in "wxzp"]
+    (folder / "rest.csv").write_text(rows(np.arange(200) * 0.05, at_rest))
     (folder / "sea.csv").write_text(plain() if sea is None else sea)
     return folder
 
@@ -114,25 +114,25 @@ def results(made, tmp_path_factory):
 @pytest.mark.slow
 def test_a_made_run_comes_back(results):
     """Scale, gauge off the origin, sensors' offsets, an axis turned round, rounded times, windows of one run."""
-    found = json.loads((results / "comparison.json").read_text())
-    follows(found, "ComparisonFile")
-    assert set(found["error"]) == {"sea-a", "sea-b", "wave"}
-    for id, errors in found["error"].items():
+    comparison = json.loads((results / "comparison.json").read_text())
+    follows(comparison, "ComparisonFile")
+    assert set(comparison["error"]) == {"sea-a", "sea-b", "wave"}
+    for id, errors in comparison["error"].items():
         assert max(errors[dof]["relative"] for dof in ("surge", "heave", "pitch")) < 0.02, id
         for band in errors.get("bands", {}).values():
             assert max(map(abs, band.values())) < 0.02, id
-    assert "bands" not in found["error"]["wave"] and found["error"]["sea-b"]["use"] == "holdout"
-    assert set(found["error"]["sea-a"]["bands"]["surge"]) == {"low_frequency", "wave_frequency"}
-    amplitudes = found["tests"]["wave"]["amplitude"]
+    assert "bands" not in comparison["error"]["wave"] and comparison["error"]["sea-b"]["use"] == "holdout"
+    assert set(comparison["error"]["sea-a"]["bands"]["surge"]) == {"low_frequency", "wave_frequency"}
+    amplitudes = comparison["tests"]["wave"]["amplitude"]
     for pair in amplitudes.values():
         assert pair["simulated"] == pytest.approx(pair["measured"], rel=0.02)
-    about = found["tests"]["sea-a"]
+    about = comparison["tests"]["sea-a"]
     assert about["peak_period"] == pytest.approx(11) and about["stated_height"] == pytest.approx(5)
     heights = about["significant_wave_height"]
     assert heights["simulated"] == pytest.approx(heights["measured"], rel=1e-3)
     assert about["start"] == pytest.approx(40, abs=STEP)
-    (sea,) = found["seas"]
-    assert sea["mismatch"] < MAX_MISMATCH and sea["gauge"] == pytest.approx(GAUGE) and found["warnings"] == []
+    (sea,) = comparison["seas"]
+    assert sea["mismatch"] < MAX_MISMATCH and sea["gauge"] == pytest.approx(GAUGE) and comparison["warnings"] == []
 
 
 @pytest.mark.slow
@@ -182,8 +182,8 @@ def failure(folder, work=lambda folder: runs(load_campaign(folder))) -> str:
 
 
 def with_test(**changes):
-    rest, first, *_ = document()["tests"]
-    return {"tests": [rest, {**first, **changes}]}
+    zero_test, first, *_ = document()["tests"]
+    return {"tests": [zero_test, {**first, **changes}]}
 
 
 def test_no_wave_channel(tmp_path):
@@ -213,16 +213,16 @@ def uneven(time, columns):
 
 
 def gap(time, columns):
-    kept = np.r_[0:600, 620:800]
-    return time[kept], columns[kept]
+    selected = np.r_[0:600, 620:800]
+    return time[selected], columns[selected]
 
 
-@pytest.mark.parametrize("change, said", [(uneven, "even sampling"), (gap, "19 missing"), (gap, "in a row")])
-def test_a_wave_record_without_an_even_clock(change, said, tmp_path):
+@pytest.mark.parametrize("change, pattern", [(uneven, "even sampling"), (gap, "19 missing"), (gap, "in a row")])
+def test_a_wave_record_without_an_even_clock(change, pattern, tmp_path):
     """Also where the windows are sound: a sea is made of the whole record."""
     changes = with_test(window=[0, 30], transient=0) if change is gap else {}
     text = failure(write(tmp_path, sea=plain(change), **changes))
-    assert "sea.csv, channel wave" in text and said.replace("19", "20") in text
+    assert "sea.csv, channel wave" in text and pattern.replace("19", "20") in text
 
 
 def test_a_cutoff_beyond_the_sampling(tmp_path):
@@ -236,8 +236,8 @@ def test_the_clock_behind_rounded_times():
     """Six digits of 0.83666 s steps, as in FOCAL campaign 2's file; three samples missing are drawn straight."""
     true = 9000 + 0.83666 * np.arange(2000)
     written = np.round(true, 1)
-    kept = np.delete(np.arange(2000), [700, 701, 702])
-    time, values, missing = on_even_clock(written[kept], 2.0 * kept, "f", "s")
+    selected = np.delete(np.arange(2000), [700, 701, 702])
+    time, values, missing = on_even_clock(written[selected], 2.0 * selected, "f", "s")
     assert missing == 3 and len(time) == 2000
     np.testing.assert_allclose(time, true, atol=0.01)
     np.testing.assert_allclose(values, 2.0 * np.arange(2000))
@@ -264,9 +264,11 @@ def test_decays_are_wanted_where_only_waves_are(tmp_path):
 # calibrated values
 
 
-def saved(folder, **more):
+def saved(folder, **values_beside):
     values = {"column.Ca_t": 1.4, "mooring.line1.stiffness": 3.3e4}
-    parameters = {k: {"value": v, "unit": "-", "identifiable": k != "column.Ca_t"} for k, v in {**values, **more}.items()}
+    parameters = {
+        k: {"value": v, "unit": "-", "identifiable": k != "column.Ca_t"} for k, v in {**values, **values_beside}.items()
+    }
     content = {
         "campaign": "other",
         "jaxhydro": "0",
@@ -308,12 +310,12 @@ def test_focal_campaign_2():
 
     campaign = load_campaign(FOCAL)
     record = campaign.record("sea-3m")
-    kept = record.time < 1100
-    short = dataclasses.replace(record, time=record.time[kept], values={k: v[kept] for k, v in record.values.items()})
-    found = compare(dataclasses.replace(campaign, records=(short,)), load_model(FOCAL / "platform.yaml"), Options(order=1))
-    (test,) = found.tests
+    early = record.time < 1100
+    short = dataclasses.replace(record, time=record.time[early], values={k: v[early] for k, v in record.values.items()})
+    comparison = compare(dataclasses.replace(campaign, records=(short,)), load_model(FOCAL / "platform.yaml"), Options(order=1))
+    (test,) = comparison.tests
     assert 4 * np.std(test.simulated_wave) == pytest.approx(4 * np.std(test.wave), rel=0.02)
     for series in test.fit.series:
         if series.channel in ("surge", "heave", "pitch"):
             assert np.corrcoef(series.measured, series.simulated)[0, 1] > 0.5, series.channel
-    assert math.isclose(found.seas[0][0].step, 0.83666, rel_tol=1e-5)
+    assert math.isclose(comparison.seas[0][0].step, 0.83666, rel_tol=1e-5)

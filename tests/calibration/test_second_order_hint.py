@@ -92,7 +92,7 @@ def test_seas_are_made_as_stated(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("stated", "said"),
+    ("stated", "pattern"),
     [
         ("{order: 3}", r"records.order: expected .*1.*2.*, found 3"),
         ("{kinds: [sums]}", r"records.kinds\[0\]: expected .*sum.*difference.*, found .*sums"),
@@ -103,8 +103,8 @@ def test_seas_are_made_as_stated(tmp_path):
         ("{order: 1, kinds: [sum]}", r"records.kinds: expected nothing, since linear waves bind none"),
     ],
 )
-def test_what_waves_cannot_have_is_refused(stated, said, tmp_path):
+def test_what_waves_cannot_have_is_refused(stated, pattern, tmp_path):
     path = shutil.copytree(COMPLETE, tmp_path / "campaign") / "campaign.yaml"
     path.write_text(path.read_text() + f"records: {stated}\n")
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=pattern):
         load_campaign(path)

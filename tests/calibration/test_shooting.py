@@ -80,10 +80,10 @@ def campaign(tmp_path_factory):
     first = load_campaign(folder)
     model = with_diffraction(build(first.platform), OPTIONS)
     ((run, sea),) = seas_of(first, model.environment, OPTIONS)
-    ((_, found, _),) = simulate_segments(
+    ((_, segment, _),) = simulate_segments(
         model, run, run_segments(run, run.records, model, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25
     )
-    write(*np.asarray(found.response.position)[:, [0, 2]].T)
+    write(*np.asarray(segment.response.position)[:, [0, 2]].T)
     return load_campaign(folder)
 
 
@@ -149,14 +149,14 @@ def test_the_elimination_is_the_full_problem(campaign, seas) -> None:
         residual = residual * jnp.sqrt(weight[:, :-1, None])
         return np.concatenate([residual.ravel(), own.ravel(), ridge * (z[:4] - start.shared)])
 
-    here = jnp.concatenate([at.shared, at.own.ravel()])
-    matrix = np.stack([(whole(here + d) - whole(here - d)) / 2e-5 for d in 1e-5 * np.eye(len(here))], axis=1)
-    dense = np.linalg.lstsq(matrix, -whole(here), rcond=None)[0]
+    unknowns = jnp.concatenate([at.shared, at.own.ravel()])
+    matrix = np.stack([(whole(unknowns + d) - whole(unknowns - d)) / 2e-5 for d in 1e-5 * np.eye(len(unknowns))], axis=1)
+    dense = np.linalg.lstsq(matrix, -whole(unknowns), rcond=None)[0]
     info, (products,) = jax.jit(normal_equations)(at, args)
     step = info.hessian.solve(info.grad)
-    found = -np.concatenate([step.shared, step.own.ravel()])
+    sparse = -np.concatenate([step.shared, step.own.ravel()])
     assert len(dense) == 2 + 2 + at.own.size
-    assert_allclose(found, dense, rtol=1e-5, atol=1e-6)
+    assert_allclose(sparse, dense, rtol=1e-5, atol=1e-6)
     fit.products = np.asarray(products)
     deviation = whole_fit.uncertainty("blocks")[0].deviation()
     priors = np.concatenate([np.asarray(ridge) ** 2, np.repeat(np.asarray(weight)[:, -1], 4)])  # what they add to the matrix
@@ -200,15 +200,15 @@ def test_coefficients_are_found_where_whole_motions_lead_astray(campaign, tmp_pa
         (tmp_path / name).write_text((campaign.folder / name).read_text())
     campaign = load_campaign(tmp_path)
     how = {"free": LABELS, "start": START, "options": OPTIONS}
-    found = calibrate_in_waves(campaign, objective="blocks", **how)
-    assert found.converged
+    result = calibrate_in_waves(campaign, objective="blocks", **how)
+    assert result.converged
     for label, true in TRUE.items():
-        assert found.parameters[label].value == pytest.approx(true, rel=1e-3), label
-        assert found.parameters[label].identifiable
-    series = found.tests[0].series[0]
+        assert result.parameters[label].value == pytest.approx(true, rel=1e-3), label
+        assert result.parameters[label].identifiable
+    series = result.tests[0].series[0]
     assert np.std(series.simulated - series.measured) < 0.01 * np.std(series.measured)
-    (said,) = [note for note in found.notes if "blocks that start anew" in note]
-    assert "in surge" in said
+    (note,) = [note for note in result.notes if "blocks that start anew" in note]
+    assert "in surge" in note
     astray = calibrate_in_waves(campaign, objective="motion", **how)
     assert abs(astray.parameters["added_mass.A11"].value / TRUE["added_mass.A11"] - 1) > 0.3
     series = astray.tests[0].series[0]

@@ -35,23 +35,23 @@ def text_of(folder: Path) -> str:
     return " ".join(parts.text.split())
 
 
-def in_order(text: str, *told: str) -> None:
+def in_order(text: str, *passages: str) -> None:
     """Assert that words follow each other in a text."""
     at = 0
-    for words in told:
-        place = text.find(words, at)
-        assert place >= 0, words
-        at = place
+    for words in passages:
+        position = text.find(words, at)
+        assert position >= 0, words
+        at = position
 
 
 def test_the_page_of_a_sea_begins_with_the_largest_motions(tmp_path: Path) -> None:
     folder = written_sea(tmp_path / "sea", figures=True)
-    found = json.loads((folder / "statistics.json").read_text())["statistics"]
+    statistics = json.loads((folder / "statistics.json").read_text())["statistics"]
     text = text_of(folder)
     in_order(
         text,
         "Simulation by jaxhydro 0.1.0",
-        f"In a sea of Hs 3.10 m, Tp 8.96 s the platform moves up to {number(found['surge']['maximum'], 3)} m in surge",
+        f"In a sea of Hs 3.10 m, Tp 8.96 s the platform moves up to {number(statistics['surge']['maximum'], 3)} m in surge",
         "deg in pitch (standard deviations",
         "from 100 to 399.5 s. No motion in sway, roll and yaw.",
         "Energy in bands",
@@ -132,9 +132,9 @@ def test_the_page_escapes_what_comes_from_files(tmp_path: Path) -> None:
 
 
 def test_series_end_with_the_test_and_the_stretch_is_about_the_highest_crest(tmp_path: Path) -> None:
-    found = read_motion(written_comparison(tmp_path / "c"))
-    assert found is not None and [test.name for test in found.tests] == ["sea-1", "wave-1"]
-    first, last = found.tests
+    page = read_motion(written_comparison(tmp_path / "c"))
+    assert page is not None and [test.name for test in page.tests] == ["sea-1", "wave-1"]
+    first, last = page.tests
     assert first.time[-1] == 399.5 and list(first.series) == ["wave", "surge", "heave", "pitch"]
     assert np.isnan(last.series["surge"]["measured"][-100:]).all()
     stretch = first.stretch()
@@ -146,10 +146,10 @@ def test_series_end_with_the_test_and_the_stretch_is_about_the_highest_crest(tmp
 def test_offsets_that_were_taken_off_are_told(tmp_path: Path) -> None:
     fitted = small()
     first = fitted.tests[0]
-    moved = replace(first, series=tuple(replace(one, offset=0.25 * (one.channel == "surge")) for one in first.series))
+    moved = replace(first, series=tuple(replace(series, offset=0.25 * (series.channel == "surge")) for series in first.series))
     write_calibration(replace(fitted, tests=(moved, *fitted.tests[1:])), tmp_path, figures=False)
-    found = read_motion(tmp_path)
-    assert found is not None and found.offsets["surge"] == pytest.approx(0.25)
+    page = read_motion(tmp_path)
+    assert page is not None and page.offsets["surge"] == pytest.approx(0.25)
     view = motion_view(tmp_path)
     assert isinstance(view, str) or "taken off the measured series: up to 0.25 m in surge" in " ".join(view.notes)
 
@@ -192,9 +192,9 @@ def test_thinned_series_keep_their_extremes() -> None:
     few = thinned(values, 10)
     assert len(few) == 100 and np.nanmax(few) == 5 and np.nanmin(few) == -5 and np.isnan(few[70:76]).all()
     assert thinned(values, 1) is values
-    one = packed(np.array([1.0, 1.0, np.nan]))
-    whole = np.frombuffer(base64.b64decode(one["data"]), "<i2")
-    assert whole[2] == -32768 and one["offset"] + one["scale"] * whole[0] == pytest.approx(1.0)
+    packed_series = packed(np.array([1.0, 1.0, np.nan]))
+    whole = np.frombuffer(base64.b64decode(packed_series["data"]), "<i2")
+    assert whole[2] == -32768 and packed_series["offset"] + packed_series["scale"] * whole[0] == pytest.approx(1.0)
 
 
 def test_outlines_are_those_of_the_members() -> None:

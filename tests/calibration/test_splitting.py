@@ -32,11 +32,11 @@ def decay(value: np.ndarray, amplitude: np.ndarray, noise: float = 0.0) -> np.nd
 
 def test_modes_of_a_record_are_those_that_made_it() -> None:
     value, amplitude = np.array([-0.02 + 2.4j, -0.05 + 2.1j]), np.array([1.0 - 0.2j, 0.3 + 0.1j])
-    found = modes_of(decay(value, amplitude) + 0.5, STEP, 5)  # a mean is a mode, too
-    order = np.argsort(-found.eigenvalue.imag)
-    assert_allclose(found.eigenvalue[order], value, rtol=1e-6)
-    assert_allclose(found.amplitude[order], amplitude, rtol=1e-5)
-    assert found.residual_rms < 1e-8
+    modes = modes_of(decay(value, amplitude) + 0.5, STEP, 5)  # a mean is a mode, too
+    order = np.argsort(-modes.eigenvalue.imag)
+    assert_allclose(modes.eigenvalue[order], value, rtol=1e-6)
+    assert_allclose(modes.amplitude[order], amplitude, rtol=1e-5)
+    assert modes.residual_rms < 1e-8
     noisy = modes_of(decay(value, amplitude, 0.01), STEP, 4)
     assert noisy.residual_rms == pytest.approx(0.01, rel=0.15)
 
@@ -46,20 +46,20 @@ def test_modes_of_a_record_are_those_that_made_it() -> None:
 def test_two_modes_tell_what_swings(share: float, period: float) -> None:
     """The closed form leaves damping out of frequencies and amplitudes: it is right to the square of damping over how far the
     modes are apart, the damping ratio to the first power of that."""
-    found = oscillator_from_modes(*two_modes(share, period, 0.01))
-    assert found is not None
-    assert found.hull_period == pytest.approx(2.58, rel=2e-3)
-    assert found.period == pytest.approx(period, rel=2e-3)
-    assert found.mass_ratio == pytest.approx(share, rel=0.08)
-    assert found.damping_ratio == pytest.approx(0.01, rel=0.25)
+    oscillator = oscillator_from_modes(*two_modes(share, period, 0.01))
+    assert oscillator is not None
+    assert oscillator.hull_period == pytest.approx(2.58, rel=2e-3)
+    assert oscillator.period == pytest.approx(period, rel=2e-3)
+    assert oscillator.mass_ratio == pytest.approx(share, rel=0.08)
+    assert oscillator.damping_ratio == pytest.approx(0.01, rel=0.25)
 
 
 def test_a_record_is_split_by_what_swings_alone() -> None:
     """Not by another motion's mode, nor by damping that is not linear, nor by noise."""
     record = decay(*two_modes(0.02, 2.7, 0.01), noise=0.003)
-    found, left = oscillator_in_decay(record, STEP, 2.6, [], 2)
-    assert found is not None and found.period == pytest.approx(2.7, rel=0.01)
-    assert left < 0.02
+    oscillator, residual = oscillator_in_decay(record, STEP, 2.6, [], 2)
+    assert oscillator is not None and oscillator.period == pytest.approx(2.7, rel=0.01)
+    assert residual < 0.02
     modes = 2 * np.pi / two_modes(0.02, 2.7, 0.01)[0].imag
     assert oscillator_in_decay(record, STEP, 2.6, [float(modes.max())], 2)[0] is None
     time = STEP * np.arange(400)

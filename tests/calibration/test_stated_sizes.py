@@ -25,9 +25,9 @@ def test_a_manifest_keeps_what_it_states(tmp_path):
         "inertia": "1e9 kg m²",
         "wave_drift.surge.envelope": "0.1 MN/m2",
     }
-    found = manifest(tmp_path, **stated)
-    assert found.plausible == stated
-    assert Manifest.model_validate(found.model_dump(mode="json", exclude_unset=True)) == found
+    read = manifest(tmp_path, **stated)
+    assert read.plausible == stated
+    assert Manifest.model_validate(read.model_dump(mode="json", exclude_unset=True)) == read
 
 
 def test_as_it_is_written_by_hand(tmp_path):

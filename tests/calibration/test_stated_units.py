@@ -90,8 +90,8 @@ hydrostatics: {displaced_volume: 0.9, C33: 2.0e4}
     ],
 )
 def test_a_file_that_states_another_unit(tmp_path, column, unit, size, words):
-    found = campaign(tmp_path, column, unit, size)
-    assert len(found) == len(words) and all(message.startswith(word) for message, word in zip(found, words))
+    warnings = campaign(tmp_path, column, unit, size)
+    assert len(warnings) == len(words) and all(message.startswith(word) for message, word in zip(warnings, words))
 
 
 @pytest.mark.parametrize(
@@ -106,8 +106,8 @@ def test_a_file_that_states_another_unit(tmp_path, column, unit, size, words):
     ],
 )
 def test_a_period_that_is_the_root_of_the_scale_away(tmp_path, scale, period, words):
-    found = campaign(tmp_path, "Roll", "deg", 5.0, scale, period)
-    assert [words in message for message in found] == ([True] if words else [])
+    warnings = campaign(tmp_path, "Roll", "deg", 5.0, scale, period)
+    assert [words in message for message in warnings] == ([True] if words else [])
 
 
 def record(elevation: np.ndarray, name: str = "wave", stated: dict[str, str] | None = None, **given: str) -> RequestedSea:

@@ -19,22 +19,22 @@ def error(relative: float, scored: bool = True) -> dict[str, Any]:
     return {"rmse": relative, "unit": "m", "relative": relative, "in_objective": scored}
 
 
-def coefficient(value: float = 1.0, sd: float | None = 0.1, **more: Any) -> dict[str, Any]:
-    return {"value": value, "standard_deviation": sd, "unit": "-", "start": 1.0, "identifiable": sd is not None} | more
+def coefficient(value: float = 1.0, sd: float | None = 0.1, **changes: Any) -> dict[str, Any]:
+    return {"value": value, "standard_deviation": sd, "unit": "-", "start": 1.0, "identifiable": sd is not None} | changes
 
 
 def saved(
     tests: dict[str, tuple[str, str, dict[str, Any]]],
     parameters: dict[str, dict[str, Any]],
     converged: bool = True,
-    **more: Any,
+    **changes: Any,
 ) -> CalibrationFile:
     """A calibration.json: tests by id as (kind, use, error)."""
     return CalibrationFile.model_validate(
         {
             "campaign": "basin",
             "jaxhydro": "0",
-            **more,
+            **changes,
             "baseline": {
                 "parameters": parameters,
                 "error": {id: {"use": use, **row} for id, (_, use, row) in tests.items()},
@@ -46,8 +46,8 @@ def saved(
     )
 
 
-def said(one: CalibrationFile) -> str:
-    return calibration_sentence(summary_of(one))
+def said(content: CalibrationFile) -> str:
+    return calibration_sentence(summary_of(content))
 
 
 SURE = {"a": coefficient(), "b": coefficient()}
@@ -66,9 +66,9 @@ def test_decays_that_are_followed_and_coefficients_that_are_determined() -> None
 
 def test_coefficients_that_are_not_determined_are_named_while_they_are_few() -> None:
     tests = {"s": ("decay", "fit", LOW)}
-    some = SURE | {"c": coefficient(sd=None), "d": coefficient(sd=None, at_bound=True)}
+    parameters = SURE | {"c": coefficient(sd=None), "d": coefficient(sd=None, at_bound=True)}
     expected = "1 decay followed to 0.40 %; 2 of 4 coefficients determined; not determined: c; at a bound: d."
-    assert said(saved(tests, some)) == expected
+    assert said(saved(tests, parameters)) == expected
     assert said(saved(tests, {"c": coefficient(sd=None)})) == "1 decay followed to 0.40 %; c not determined."
     assert said(saved(tests, {"c": coefficient(at_bound=True)})).endswith("; c is at a bound.")
     many = SURE | {name: coefficient(sd=None) for name in "cdef"}
@@ -112,8 +112,8 @@ def test_a_fit_to_offsets_alone_has_no_tests() -> None:
 def test_intervals_in_one_sentence() -> None:
     all_known = IntervalSummary(True, "95 %", {"a": 0.1, "b": 0.0003}, ())
     assert interval_sentence(all_known) == "All 2 coefficients known to 0.03-10 % (95 % intervals), the least well a."
-    some = IntervalSummary(False, "90 %", {"a": 0.1}, ("c", "d"))
-    assert interval_sentence(some) == (
+    partly_known = IntervalSummary(False, "90 %", {"a": 0.1}, ("c", "d"))
+    assert interval_sentence(partly_known) == (
         "The fit did not converge. 1 of 3 coefficients known to 10 % (90 % intervals); not determined: c and d."
     )
     wide = IntervalSummary(True, "95 %", {"a": 0.002, "b": 35.5, "c": 1.9}, ())
@@ -157,12 +157,12 @@ def test_equal_warnings_are_said_once() -> None:
 
 def test_warnings_that_differ_by_numbers_alone_are_one() -> None:
     """With the spans of these; not where they are of an instant, nor where the digits are part of a name."""
-    each = (("a", -0.149), ("b", -0.0885), ("c", -0.108))
-    drifts = [finding(id, f"its mean drifts by {x:.3g} m over 100 s") for id, x in each]
-    (one,) = group_findings(drifts)
-    assert one.message == "its mean drifts by -0.149 to -0.0885 m over 100 s" and one.tests == ("a", "b", "c")
+    drift_values = (("a", -0.149), ("b", -0.0885), ("c", -0.108))
+    drifts = [finding(id, f"its mean drifts by {x:.3g} m over 100 s") for id, x in drift_values]
+    (group,) = group_findings(drifts)
+    assert group.message == "its mean drifts by -0.149 to -0.0885 m over 100 s" and group.tests == ("a", "b", "c")
     spikes = [replace(finding(id, f"a spike at {t} s"), time=float(t)) for id, t in (("a", 10), ("b", 20), ("c", 20))]
-    assert [(one.message, one.tests) for one in group_findings(spikes)] == [
+    assert [(group.message, group.tests) for group in group_findings(spikes)] == [
         ("a spike at 10 s", ("a",)),
         ("a spike at 20 s", ("b", "c")),
     ]
@@ -178,7 +178,8 @@ def test_warnings_that_differ_by_numbers_alone_are_one() -> None:
 def test_damping_far_outside_its_interval_is_named() -> None:
     def decay(p: float, q: float) -> dict[str, Any]:
         terms = {
-            name: {"measured": 1.0, "half_width": 0.1, "simulated": one} for name, one in (("linear", p), ("quadratic", q))
+            name: {"measured": 1.0, "half_width": 0.1, "simulated": simulated}
+            for name, simulated in (("linear", p), ("quadratic", q))
         }
         about = {"use": "fit", "kind": "decay", "file": "a.csv"}
         return about | {"linear_quadratic": {"period": 10.0, "unit": "rad", **terms}}
@@ -187,8 +188,10 @@ def test_damping_far_outside_its_interval_is_named() -> None:
     near = content | {"tests": {"a": decay(1.14, 0.86)}}
     assert tables.damping_outside(CalibrationFile.model_validate(near)) == ""
     far = content | {"tests": {"a": decay(1.16, 0.8), "b": decay(1.0, 2.0)}}
-    said = tables.damping_outside(CalibrationFile.model_validate(far))
-    assert said.startswith("Far outside the measured interval: p and q of a and q of b.") and "jaxhydro diagnose" in said
+    sentence = tables.damping_outside(CalibrationFile.model_validate(far))
+    assert (
+        sentence.startswith("Far outside the measured interval: p and q of a and q of b.") and "jaxhydro diagnose" in sentence
+    )
     ends = "The damping of a and b is far outside the measured interval."
     assert calibration_sentence(summary_of(CalibrationFile.model_validate(far))).endswith(ends)
 
@@ -199,11 +202,11 @@ def test_damping_far_outside_its_interval_is_named() -> None:
 def test_calibrated_values_beside_true_ones() -> None:
     truth = {"a": 1.05, "b": 1.3, "c": 2.0, "d": 3.0, "e": 0.0}
     parameters = SURE | {"c": coefficient(sd=None), "e": coefficient(0.01, 0.02)}
-    one = saved({}, parameters, truth=truth)
-    _, rows = tables.comparison_with_truth(one)
+    content = saved({}, parameters, truth=truth)
+    _, rows = tables.comparison_with_truth(content)
     assert [row[0] for row in rows] == list(truth) and rows[0][4:] == ("-4.8 %", "-0.5 sd")
     assert rows[2][2:] == ("(1.00) not determined", "", "–", "–") and rows[3][2] == "not calibrated" and rows[4][4] == "–"
-    assert tables.agreement_with_truth(one) == (
+    assert tables.agreement_with_truth(content) == (
         "2 of 5 coefficients lie within 2 standard deviations of the true values; the farthest is 3.0 away."
     )
 

@@ -66,14 +66,14 @@ def test_motions_are_those_of_the_reference_point(tmp_path) -> None:
 def test_a_point_aside() -> None:
     """y too: against the rotation by hand, for a yaw of 90 degrees."""
     values = {"surge": np.array([-3.0]), "sway": np.array([-1.0]), "yaw": np.array([np.pi / 2])}
-    found = move_to_reference(values, (1.0, 2.0, 5.0))  # (1, 2) goes to (-2, 1)
-    assert_allclose([found["surge"], found["sway"], found["yaw"]], [[0.0], [0.0], [np.pi / 2]], atol=1e-12)
+    moved = move_to_reference(values, (1.0, 2.0, 5.0))  # (1, 2) goes to (-2, 1)
+    assert_allclose([moved["surge"], moved["sway"], moved["yaw"]], [[0.0], [0.0], [np.pi / 2]], atol=1e-12)
 
 
 def test_an_angle_that_is_needed(tmp_path) -> None:
     campaign(tmp_path, names=("surge", "heave"))
     with pytest.raises(InputError) as error:
         read_manifest(tmp_path)
-    said = str(error.value)
-    assert "tests[0], tracked_point: expected a channel pitch, which moves the point in surge, since z is -0.3 m" in said
-    assert "heave, since x is 0.04 m" in said and "yaw" not in said
+    message = str(error.value)
+    assert "tests[0], tracked_point: expected a channel pitch, which moves the point in surge, since z is -0.3 m" in message
+    assert "heave, since x is 0.04 m" in message and "yaw" not in message

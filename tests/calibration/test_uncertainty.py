@@ -206,12 +206,12 @@ def test_blocks_scatter_as_the_covariance_says(which: str, request) -> None:
 
 
 def test_the_same_seed_gives_the_same_draws_and_progress_is_told(ship: Likelihood) -> None:
-    said: list[tuple[int, int]] = []
-    first = bootstrap_blocks(ship, 20, seed=4, progress=lambda *now: said.append(now))
+    reports: list[tuple[int, int]] = []
+    first = bootstrap_blocks(ship, 20, seed=4, progress=lambda *now: reports.append(now))
     same, third = bootstrap_blocks(ship, 20, seed=4), bootstrap_blocks(ship, 20, seed=5)
     np.testing.assert_array_equal(first.coordinate, same.coordinate)
     assert np.abs(first.coordinate - third.coordinate).max() > 0
-    assert said == [(16, 20), (20, 20)]
+    assert reports == [(16, 20), (20, 20)]
 
 
 def test_repeats_are_drawn_anew(ship: Likelihood) -> None:
@@ -242,12 +242,12 @@ def test_no_repeats_is_told(ship: Likelihood, tmp_path: Path, monkeypatch: pytes
 def test_the_energys_gradient_is_that_of_the_sum_of_squares(ship: Likelihood) -> None:
     root = whitening(ship, ship.scale())[0]
     z = jnp.asarray(ship.estimate + root @ np.random.default_rng(0).standard_normal(len(root)))
-    both = jax.jit(jax.value_and_grad(potential_energy(ship, ship.scale())))
-    value, slope = both(z)
+    energy_and_slope = jax.jit(jax.value_and_grad(potential_energy(ship, ship.scale())))
+    value, slope = energy_and_slope(z)
     for direction in np.random.default_rng(1).standard_normal((2, len(root))) @ root.T:
-        ends = [float(both(z + sign * 1e-3 * direction)[0]) for sign in (1, -1)]
+        ends = [float(energy_and_slope(z + sign * 1e-3 * direction)[0]) for sign in (1, -1)]
         assert float(slope @ direction) == pytest.approx((ends[0] - ends[1]) / 2e-3, rel=1e-4, abs=1e-6)
-    assert float(value) > float(both(jnp.asarray(ship.estimate))[0])
+    assert float(value) > float(energy_and_slope(jnp.asarray(ship.estimate))[0])
 
 
 @pytest.mark.parametrize("which", ["ship", "ringing"])

@@ -38,31 +38,31 @@ def written(ship: tuple[Path, Path, Likelihood], tmp_path_factory: pytest.TempPa
 
 @pytest.mark.slow
 def test_what_is_written_is_what_python_finds(ship: tuple[Path, Path, Likelihood], written: tuple[Path, str]) -> None:
-    (_, _, likely), (out, said) = ship, written
+    (_, _, likely), (out, output) = ship, written
     content = json.loads((out / "uncertainty.json").read_text())
     assert set(content["parameters"]) == set(FREE) and content["level"] == 0.95 and content["converged"] is True
     draws = {"blocks": bootstrap_blocks(likely, 40, seed=3), "repeats": bootstrap_repeats(likely, 40, seed=3)}
-    for label, one in content["parameters"].items():
+    for label, intervals in content["parameters"].items():
         low, high = likely.interval(label)
         near = 0.01 * (high - low)  # the refit begins elsewhere
-        np.testing.assert_allclose(one["laplace"], (low, high), atol=near)
-        np.testing.assert_allclose(one["white"], likely.interval(label, white=True), atol=near)
-        assert one["white_too_small_by"] == pytest.approx(likely.excess()[label], rel=0.01)
-        np.testing.assert_allclose(one["blocks"], draws["blocks"].interval(label), atol=5 * near)
-        np.testing.assert_allclose(one["repeats"], draws["repeats"].interval(label, kind="normal"), atol=5 * near)
-        assert f"{label} {to_width(one['value'], high - low)}" in said
+        np.testing.assert_allclose(intervals["laplace"], (low, high), atol=near)
+        np.testing.assert_allclose(intervals["white"], likely.interval(label, white=True), atol=near)
+        assert intervals["white_too_small_by"] == pytest.approx(likely.excess()[label], rel=0.01)
+        np.testing.assert_allclose(intervals["blocks"], draws["blocks"].interval(label), atol=5 * near)
+        np.testing.assert_allclose(intervals["repeats"], draws["repeats"].interval(label, kind="normal"), atol=5 * near)
+        assert f"{label} {to_width(intervals['value'], high - low)}" in output
     along = profile(likely, "added_mass.A44")
     np.testing.assert_allclose(content["parameters"]["added_mass.A44"]["profile"], along.interval, rtol=1e-4)
     assert list(content["profiles"]) == ["added_mass.A44"] and content["nuts"] is None
     assert content["bootstrap"]["repeats"]["groups"] == {"roll-1": ["roll-1", "roll-3"], "roll-2": ["roll-2"]}
-    assert {Path(one["file"]).name for one in content["figures"]} == {
+    assert {Path(figure["file"]).name for figure in content["figures"]} == {
         "profile-added_mass.A44.png",
         "draws-blocks.png",
         "draws-repeats.png",
     }
-    assert all((out / one["file"]).stat().st_size > 5000 for one in content["figures"])
+    assert all((out / figure["file"]).stat().st_size > 5000 for figure in content["figures"])
     assert any("roll-2 without repeats" in note for note in content["notes"])
-    assert "makes a page of them" in said
+    assert "makes a page of them" in output
 
 
 @pytest.fixture(scope="module")
@@ -100,8 +100,8 @@ def test_what_does_not_fit_together_is_told(fake: tuple[Path, Path], tmp_path: P
     assert "a finished calibration" in said(baseline=saved["baseline"] | {"converged": False})
     foreign = {**saved["baseline"]["parameters"], "pontoon.Ca_y": saved["baseline"]["parameters"]["pontoon.Ca_z"]}
     assert "pontoon.Ca_y" in said(baseline=saved["baseline"] | {"parameters": foreign})
-    gone = ("--calibration", tmp_path / "none.json", "--out", tmp_path / "o")
-    assert "no such file" in run("uncertainty", folder, *gone, status=2)
+    arguments = ("--calibration", tmp_path / "none.json", "--out", tmp_path / "o")
+    assert "no such file" in run("uncertainty", folder, *arguments, status=2)
 
 
 @pytest.mark.slow

@@ -59,9 +59,9 @@ CONTENT: dict[str, Any] = {
 PARAMETERS = CONTENT["parameters"]
 
 
-def alone(one: dict[str, Any]) -> dict[str, Any]:
+def alone(parameter: dict[str, Any]) -> dict[str, Any]:
     """A parameter without intervals of other ways."""
-    return {key: value for key, value in one.items() if key not in ("profile", "blocks")}
+    return {key: value for key, value in parameter.items() if key not in ("profile", "blocks")}
 
 
 def page_of(folder: Path, **changes: Any) -> Page:
@@ -82,7 +82,7 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(tmp_path: Path) -> No
     (tmp_path / "figures").mkdir()
     Figure(figsize=(1, 1)).savefig(tmp_path / "figures" / "draws-blocks.png")
     page = page_of(tmp_path, figures=[{"file": "figures/draws-blocks.png", "caption": "draws of two"}])
-    told = (
+    passages = (
         "a roll decay",
         "Uncertainty by jaxhydro 0.1.0",
         "1 of 2 coefficients known to 1.4 % (90 % intervals)",
@@ -112,10 +112,10 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(tmp_path: Path) -> No
         "jaxhydro 0.1.0",
     )
     places, at = [], 0
-    for text in told:
+    for text in passages:
         at = words(page).find(text, at)
         places.append(at)
-    assert -1 not in places, list(zip(told, places))
+    assert -1 not in places, list(zip(passages, places))
     assert "did not converge" not in page.text and "NUTS" not in page.text and "Bootstrap, repeats" not in page.text
     assert len(page.links) == 1 and page.links[0].startswith("data:image/png;base64,")
     assert not {"script", "link", "iframe", "object"} & set(page.tags)
@@ -143,20 +143,20 @@ def test_intervals_of_laplace_alone_make_a_page(tmp_path: Path) -> None:
 
 
 def test_draws_of_repeats_and_from_the_posterior_are_told(tmp_path: Path) -> None:
-    one = alone(MASS) | {"repeats": [18.2, 18.6], "nuts": [18.1, 18.7]}
+    parameter = alone(MASS) | {"repeats": [18.2, 18.6], "nuts": [18.1, 18.7]}
     nuts = {"chains": 4, "draws": 350, "divergences": 0, "r_hat": {}, "effective": {}}
     repeats = {"repeats": {"asked": 60, "draws": 60, "unsettled": 0, "groups": {"a": ["b"]}}}
-    page = page_of(tmp_path, parameters={"added_mass.A44": one}, bootstrap=repeats, nuts=nuts)
-    said = words(page)
-    assert "those that repeat each other and fitted again, 60 times" in said and "4 chains of 350" in said
-    assert "18.10 to 18.70" in said and "18.20 to 18.60" in said
-    assert "Bootstrap, blocks" not in said and "Profile" not in said
+    page = page_of(tmp_path, parameters={"added_mass.A44": parameter}, bootstrap=repeats, nuts=nuts)
+    text = words(page)
+    assert "those that repeat each other and fitted again, 60 times" in text and "4 chains of 350" in text
+    assert "18.10 to 18.70" in text and "18.20 to 18.60" in text
+    assert "Bootstrap, blocks" not in text and "Profile" not in text
 
 
 def test_what_did_not_converge_says_so_on_top(tmp_path: Path) -> None:
-    said = words(page_of(tmp_path, converged=False))
-    assert -1 < said.find("did not converge") < said.find("in 100")
-    assert "not intervals of a calibration" in said
+    text = words(page_of(tmp_path, converged=False))
+    assert -1 < text.find("did not converge") < text.find("in 100")
+    assert "not intervals of a calibration" in text
 
 
 def test_the_page_escapes_what_comes_from_files(tmp_path: Path) -> None:
@@ -167,7 +167,7 @@ def test_the_page_escapes_what_comes_from_files(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "expected"),
     [
         ("{", "line 1, column 2: expected valid JSON"),
         ("[]", "expected a mapping of keys to values, found list"),
@@ -180,22 +180,22 @@ def test_the_page_escapes_what_comes_from_files(tmp_path: Path) -> None:
         (CONTENT | {"bootstrap": {"blocks": {"asked": 3}}}, "bootstrap.blocks.draws: expected a whole number"),
     ],
 )
-def test_a_broken_file_is_told(tmp_path: Path, content: Any, said: str) -> None:
+def test_a_broken_file_is_told(tmp_path: Path, content: Any, expected: str) -> None:
     """Which file, which key, what was expected and what was found; no page is made."""
     (tmp_path / UNCERTAINTY_FILE).write_text(content if isinstance(content, str) else json.dumps(content))
     with pytest.raises(InputError) as caught:
         write_report(tmp_path)
-    assert said in str(caught.value) and str(tmp_path / UNCERTAINTY_FILE) in str(caught.value)
+    assert expected in str(caught.value) and str(tmp_path / UNCERTAINTY_FILE) in str(caught.value)
     assert [path.name for path in tmp_path.iterdir()] == [UNCERTAINTY_FILE]
 
 
 def test_the_command_makes_the_page_and_a_new_result_takes_it_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found: Any = SimpleNamespace()
+    result: Any = SimpleNamespace()
     monkeypatch.setattr(uncertainty_outputs, "document", lambda _: UncertaintyFile.model_validate(CONTENT))
-    write_uncertainty(found, tmp_path / "out", figures=False)
+    write_uncertainty(result, tmp_path / "out", figures=False)
     assert "report.html" in run("report", tmp_path / "out") and (tmp_path / "out" / "report.html").exists()
     (tmp_path / "out" / "notes.txt").write_text("keep")
-    write_uncertainty(found, tmp_path / "out", figures=False)
+    write_uncertainty(result, tmp_path / "out", figures=False)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["notes.txt", UNCERTAINTY_FILE]
     assert f"{DIAGNOSIS_FILE}, {UNCERTAINTY_FILE}, comparison.json, motion.csv or sweep.json" in run(
         "report", tmp_path, status=2

@@ -8,13 +8,13 @@ from calibration.fitting.unit_hints import unit_hints
 from calibration.result import Estimate
 
 
-def hints(value: float, start: float, deviation: float | None = None, known: bool = True) -> list[str]:
+def hints(value: float, start: float, deviation: float | None = None, identifiable: bool = True) -> list[str]:
     deviation = 0.01 * abs(value) if deviation is None else deviation
-    return list(unit_hints([Estimate("quadratic_damping.B44", value, deviation, "-", "damping", start, False, known)]))
+    return list(unit_hints([Estimate("quadratic_damping.B44", value, deviation, "-", "damping", start, False, identifiable)]))
 
 
 @pytest.mark.parametrize(
-    ("ratio", "said"),
+    ("ratio", "expected"),
     [
         (180 / math.pi, "57.3 times the declared value: are degrees and radians mixed up"),
         (math.pi / 180, "1/57.3 of the declared value: are degrees and radians mixed up"),
@@ -22,13 +22,13 @@ def hints(value: float, start: float, deviation: float | None = None, known: boo
         (-1.02, "has the declared size and the other sign"),
     ],
 )
-def test_what_is_told(ratio: float, said: str) -> None:
+def test_what_is_told(ratio: float, expected: str) -> None:
     (hint,) = hints(5.0 * ratio, 5.0)
-    assert said in hint
+    assert expected in hint
 
 
 @pytest.mark.parametrize(
-    ("value", "start", "deviation", "known"),
+    ("value", "start", "deviation", "identifiable"),
     [
         (5.0, 5.0, None, True),
         (40.0, 1.0, None, True),
@@ -39,5 +39,5 @@ def test_what_is_told(ratio: float, said: str) -> None:
         (0.0, 1.0, 0.1, True),  # no ratio at all
     ],
 )
-def test_what_is_not(value: float, start: float, deviation: float | None, known: bool) -> None:
-    assert hints(value, start, deviation, known) == []
+def test_what_is_not(value: float, start: float, deviation: float | None, identifiable: bool) -> None:
+    assert hints(value, start, deviation, identifiable) == []

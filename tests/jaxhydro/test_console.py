@@ -62,7 +62,7 @@ def test_what_fits_is_as_wide_as_before(monkeypatch, capsys) -> None:
 
 
 @pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     small_campaign(tmp_path / "my-campaign")
     (tmp_path / "results").mkdir()
@@ -110,19 +110,19 @@ MISSING = [
 
 
 @pytest.mark.parametrize(("command", "name", "words"), MISSING, ids=[f"{c[0]} {n}" for c, n, _ in MISSING])
-def test_a_missing_path_is_told_as_what_it_is(here: Path, command: list[str], name: str, words: str) -> None:
+def test_a_missing_path_is_told_as_what_it_is(working_folder: Path, command: list[str], name: str, words: str) -> None:
     """A folder as a folder and a file as a file, with a name that is near."""
-    first, *more = command
+    first, *arguments = command
     if first == "simulate" and name != "empty":
-        more = [*more, "--release", "surge=1"]
+        arguments = [*arguments, "--release", "surge=1"]
     out = [] if first == "report" else ["--out", "o"]
-    text = run(first, name, *more, *out, status=2)
+    text = run(first, name, *arguments, *out, status=2)
     assert words in text
     assert not text.endswith("?") or "Did you mean" in words
-    assert not (here / "o").exists()
+    assert not (working_folder / "o").exists()
 
 
-def test_a_missing_calibration_is_told(here: Path) -> None:
+def test_a_missing_calibration_is_told(working_folder: Path) -> None:
     expected = "expected a calibration.json, as `jaxhydro calibrate` writes it, found"
     for name, words in (
         ("result", f"result: {expected} no such folder. Did you mean 'results'?"),
@@ -132,10 +132,10 @@ def test_a_missing_calibration_is_told(here: Path) -> None:
         assert words in run("simulate", DEMO / "platform.yaml", *options, status=2)
 
 
-def test_paths_that_are_near(here: Path) -> None:
+def test_paths_that_are_near(working_folder: Path) -> None:
     assert suggest_path("my-campain/heave1.csv") == ""  # the folder is near, and has no such file
     assert suggest_path("my-campain/heave-1.csv") == "Did you mean 'my-campaign/heave-1.csv'?"
-    assert suggest_path(here / "swep.yaml") == f"Did you mean '{here / 'sweep.yaml'}'?"
+    assert suggest_path(working_folder / "swep.yaml") == f"Did you mean '{working_folder / 'sweep.yaml'}'?"
     assert suggest_path("quite/another/thing") == "" and suggest_path("a\0b") == ""
     with pytest.raises(jh.InputError, match="expected a YAML file"):
         jh.load_platform("nowhere.yaml")
@@ -165,8 +165,10 @@ def test_shells_complete_what_is_typed(line: str, words: list[str], monkeypatch:
 
 @pytest.mark.parametrize("word", ["ga", "de", "cma-es", "multi"])
 def test_searches_that_are_baselines_are_refused(word: str, tmp_path: Path) -> None:
-    said = " ".join(run("calibrate", tmp_path, "--out", tmp_path / "o", "--method", word, status=2).replace("│", " ").split())
-    assert f"multistart expected, found '{word}'" in said and ("benchmarks.validate" in said) is (word != "multi")
+    message = " ".join(
+        run("calibrate", tmp_path, "--out", tmp_path / "o", "--method", word, status=2).replace("│", " ").split()
+    )
+    assert f"multistart expected, found '{word}'" in message and ("benchmarks.validate" in message) is (word != "multi")
 
 
 def test_the_demo_says_where_it_writes() -> None:

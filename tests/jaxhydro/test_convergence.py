@@ -22,7 +22,7 @@ def sea() -> IrregularSea:
 
 
 @pytest.fixture(scope="module")
-def found(sea: IrregularSea):
+def study(sea: IrregularSea):
     return convergence(PLATFORM, sea, TIMES, peak_period=8.96, elements=(4, 1, 2), points=1, transient=120.0)
 
 
@@ -33,43 +33,43 @@ def test_a_lumped_strip_is_at_the_middle() -> None:
     assert len(lumped) == 3
     of = np.array(after.strips.element)[lumped]
     along = after.strips.fraction[np.array(lumped)] * after.elements.length[of]
-    place = after.strips.start[:, lumped] + along * after.strips.axis[:, lumped]
-    assert_allclose(jnp.hypot(place[0], place[1]), 25.25, rtol=1e-12)
+    middle = after.strips.start[:, lumped] + along * after.strips.axis[:, lumped]
+    assert_allclose(jnp.hypot(middle[0], middle[1]), 25.25, rtol=1e-12)
     assert_allclose(after.strips.weight[np.array(lumped)], 1.0, rtol=1e-15)
     count = [sum(float(h.elements.thickness[e]) == 0 for e in h.strips.element) for h in (before, after)]
     assert count[0] == count[1] == 4 * 8
 
 
 @pytest.mark.slow
-def test_periods_by_elements(found) -> None:
+def test_periods_by_elements(study) -> None:
     """Heave's added mass is the sum whatever the lumps; of pitch's n lumps miss L^2 / (12 n^2): errors of T^2 fall by 4."""
-    assert found.elements == (4, 1, 2)
-    assert_allclose(found.period["heave"], found.period["heave"][0], rtol=1e-10)
+    assert study.elements == (4, 1, 2)
+    assert_allclose(study.period["heave"], study.period["heave"][0], rtol=1e-10)
     whole = natural_modes(build(PLATFORM)).of("pitch")
-    four, one, two = found.period["pitch"] ** 2 - whole**2
-    assert one < two < four < 0
-    assert (one / two, two / four) == pytest.approx((4, 4), rel=0.03)
+    four, single, two = study.period["pitch"] ** 2 - whole**2
+    assert single < two < four < 0
+    assert (single / two, two / four) == pytest.approx((4, 4), rel=0.03)
 
 
 @pytest.mark.slow
-def test_motions_by_elements(found) -> None:
+def test_motions_by_elements(study) -> None:
     """Against the finest: none for itself, less for two than for one; changes of integrals follow."""
     for dof in ("surge", "heave", "pitch"):
-        four, one, two = found.difference[dof]
-        assert four == 0 < two < one
-    heave = found.change("heave", "wave_frequency")
+        four, single, two = study.difference[dof]
+        assert four == 0 < two < single
+    heave = study.change("heave", "wave_frequency")
     assert heave[0] == 0 < heave[2] < heave[1] < 0.2
-    assert_allclose(found.integral["heave"]["wave_frequency"][1], (1 + heave[1]) * found.integral["heave"]["wave_frequency"][0])
+    assert_allclose(study.integral["heave"]["wave_frequency"][1], (1 + heave[1]) * study.integral["heave"]["wave_frequency"][0])
 
 
 @pytest.mark.slow
-def test_the_same_in_a_cut_platform(sea: IrregularSea, found) -> None:
+def test_the_same_in_a_cut_platform(sea: IrregularSea, study) -> None:
     """One row is the simulation of the platform with that many elements."""
     motion = np.asarray(simulate(build(with_elements(PLATFORM, "pontoon", 2, points=1)), TIMES, sea)["heave"])
-    kept = TIMES >= 120.0
-    spectrum = power_spectrum(TIMES[kept], motion[kept])
+    late = TIMES >= 120.0
+    spectrum = power_spectrum(TIMES[late], motion[late])
     expected = band_integral(spectrum, *bands("heave", 8.96)["low_frequency"])
-    assert found.integral["heave"]["low_frequency"][2] == pytest.approx(expected, rel=1e-12)
+    assert study.integral["heave"]["low_frequency"][2] == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -45,10 +45,10 @@ def test_a_uniform_profile_is_the_uniform_current() -> None:
 )
 def test_drag_on_a_column_by_quadrature(current: dict, speed) -> None:
     """1/2 rho Cd D int U^2 dz, and its moment about the reference point."""
-    found = force(flowing(**current))
+    drag = force(flowing(**current))
     scale = 0.5 * RHO * COEFFICIENTS["Cd_t"] * DIAMETER
-    assert_allclose(found[0], scale * quad(lambda z: speed(z) ** 2, -DRAUGHT, 0)[0], rtol=3e-4)
-    assert_allclose(found[4], scale * quad(lambda z: z * speed(z) ** 2, -DRAUGHT, 0)[0], rtol=1e-3)
+    assert_allclose(drag[0], scale * quad(lambda z: speed(z) ** 2, -DRAUGHT, 0)[0], rtol=3e-4)
+    assert_allclose(drag[4], scale * quad(lambda z: z * speed(z) ** 2, -DRAUGHT, 0)[0], rtol=1e-3)
 
 
 def level(z: float) -> float:
@@ -56,9 +56,9 @@ def level(z: float) -> float:
 
 
 def test_the_heading_is_where_it_flows() -> None:
-    found = force(flowing(speed=1.0, heading=30.0))
-    assert math.degrees(math.atan2(found[1], found[0])) == pytest.approx(30.0, abs=1e-6)
-    assert np.hypot(found[0], found[1]) == pytest.approx(0.5 * RHO * COEFFICIENTS["Cd_t"] * DIAMETER * DRAUGHT, rel=1e-3)
+    drag = force(flowing(speed=1.0, heading=30.0))
+    assert math.degrees(math.atan2(drag[1], drag[0])) == pytest.approx(30.0, abs=1e-6)
+    assert np.hypot(drag[0], drag[1]) == pytest.approx(0.5 * RHO * COEFFICIENTS["Cd_t"] * DIAMETER * DRAUGHT, rel=1e-3)
 
 
 @pytest.mark.parametrize(

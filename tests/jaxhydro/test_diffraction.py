@@ -30,8 +30,8 @@ def parts(ka):
 
 def scipys(x, order=1):
     """The derivatives of J1 and Y1 of some order, and their modulus."""
-    found = np.stack([jvp(1, x, order), yvp(1, x, order)])
-    return found, np.hypot(*found)
+    derivatives = np.stack([jvp(1, x, order), yvp(1, x, order)])
+    return derivatives, np.hypot(*derivatives)
 
 
 slope_forward = {f: jax.jit(jax.vmap(jax.jacfwd(f), out_axes=1)) for f in (pair, parts)}
@@ -42,25 +42,25 @@ slope_reverse = {f: jax.jit(jax.vmap(jax.jacrev(f), out_axes=1)) for f in (pair,
 
 
 def test_bessel_primes_against_scipy() -> None:
-    found, modulus = scipys(GRID)
+    expected, modulus = scipys(GRID)
     primes = pair(GRID)
     assert primes.dtype == jnp.float64
-    assert np.max(np.abs(primes - found) / modulus) < 3e-14
+    assert np.max(np.abs(primes - expected) / modulus) < 3e-14
     small = GRID < 1.0  # J1' is far below the modulus there; neither has a zero
-    assert_allclose(primes[:, small], found[:, small], rtol=3e-14)
+    assert_allclose(primes[:, small], expected[:, small], rtol=3e-14)
 
 
 def test_derivatives_of_bessel_primes_against_scipy() -> None:
-    found, modulus = scipys(GRID, 2)
+    expected, modulus = scipys(GRID, 2)
     slopes = slope_forward[pair](GRID)
-    assert np.max(np.abs(slopes - found) / modulus) < 3e-14
-    assert_allclose(slopes[0, GRID < 1.0], found[0, GRID < 1.0], rtol=3e-14)
+    assert np.max(np.abs(slopes - expected) / modulus) < 3e-14
+    assert_allclose(slopes[0, GRID < 1.0], expected[0, GRID < 1.0], rtol=3e-14)
 
 
 def test_second_derivatives_of_bessel_primes_against_scipy() -> None:
-    found, modulus = scipys(GRID, 3)
+    expected, modulus = scipys(GRID, 3)
     bend = jax.jit(jax.vmap(jax.jacfwd(jax.jacfwd(pair)), out_axes=1))(GRID)
-    assert np.max(np.abs(bend - found) / modulus) < 1e-12
+    assert np.max(np.abs(bend - expected) / modulus) < 1e-12
 
 
 @pytest.mark.parametrize("function", [pair, parts])
@@ -69,8 +69,8 @@ def test_reverse_is_forward_and_compiled_is_eager(function) -> None:
     assert np.max(np.abs(reverse - forward) / np.hypot(*forward)) < 1e-14
     values = function(GRID)
     one_by_one = np.stack([jax.jit(function)(x) for x in GRID[::100]], axis=1)
-    for other in (jax.jit(function)(GRID)[:, ::100], jax.vmap(function, out_axes=1)(GRID)[:, ::100], one_by_one):
-        assert np.max(np.abs(other - values[:, ::100]) / np.hypot(*values[:, ::100])) < 1e-14
+    for transformed in (jax.jit(function)(GRID)[:, ::100], jax.vmap(function, out_axes=1)(GRID)[:, ::100], one_by_one):
+        assert np.max(np.abs(transformed - values[:, ::100]) / np.hypot(*values[:, ::100])) < 1e-14
 
 
 @pytest.mark.parametrize("function", [pair, parts])
@@ -97,9 +97,9 @@ def test_coefficient_and_slope_against_scipy() -> None:
     expected = 4 / (np.pi * GRID**2 * (y + 1j * j))
     assert np.max(np.abs(maccamy_fuchs(GRID) / expected - 1)) < 3e-14
     slope = -expected * (2 / GRID + (y2 + 1j * j2) / (y + 1j * j))
-    found = slope_forward[parts](GRID)
+    slopes = slope_forward[parts](GRID)
     # the two terms of the slope cancel in long waves: SciPy's error is of the size of one of them
-    assert np.all(np.abs(found[0] + 1j * found[1] - slope) < 3e-14 * np.abs(expected) * (2 / GRID + 1))
+    assert np.all(np.abs(slopes[0] + 1j * slopes[1] - slope) < 3e-14 * np.abs(expected) * (2 / GRID + 1))
 
 
 def test_coefficient_is_the_pressure_on_the_wall() -> None:
@@ -113,9 +113,9 @@ def test_coefficient_is_the_pressure_on_the_wall() -> None:
 @pytest.mark.parametrize(("ka", "magnitude", "lag"), COEFFICIENTS)
 def test_magnitude_and_lag(ka: float, magnitude: float, lag: float) -> None:
     """Numbers worked out elsewhere, to their last digit."""
-    found = complex(maccamy_fuchs(ka))
-    assert abs(found) == pytest.approx(magnitude, abs=0.51e-5)
-    assert -math.degrees(np.angle(found)) == pytest.approx(lag, abs=0.51e-3)
+    coefficient = complex(maccamy_fuchs(ka))
+    assert abs(coefficient) == pytest.approx(magnitude, abs=0.51e-5)
+    assert -math.degrees(np.angle(coefficient)) == pytest.approx(lag, abs=0.51e-3)
 
 
 def test_long_waves() -> None:
@@ -152,6 +152,6 @@ def test_against_panels() -> None:
     """Capytaine's force on the whole depth over the depth's acceleration: all depths have one coefficient."""
     ka, _, magnitude, lag = np.loadtxt(TABLE, delimiter=",", comments="#", skiprows=4, unpack=True)
     assert ka.min() <= 0.05 and ka.max() >= 2.5
-    found = maccamy_fuchs(ka)
-    assert_allclose(np.abs(found), magnitude, rtol=1e-3)
-    assert_allclose(-np.degrees(np.angle(found)), lag, rtol=0, atol=0.03)
+    coefficients = maccamy_fuchs(ka)
+    assert_allclose(np.abs(coefficients), magnitude, rtol=1e-3)
+    assert_allclose(-np.degrees(np.angle(coefficients)), lag, rtol=0, atol=0.03)

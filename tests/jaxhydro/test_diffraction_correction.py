@@ -50,16 +50,16 @@ def force(model: Model, sea: jh.WaveSea) -> jnp.ndarray:
 def test_the_first_order_force_is_that_of_the_table(diffraction: str) -> None:
     """On the upright hull in mean wetting, whatever the added-mass coefficients are; drag left out."""
     model = corrected(diffraction=diffraction, wetting="mean")
-    kept = (StripInertia, EndInertia, DiffractionCorrection)
-    loads = (*(load for load in model.loads if isinstance(load, kept)), CoveredEnds())
+    first_order_loads = (StripInertia, EndInertia, DiffractionCorrection)
+    loads = (*(load for load in model.loads if isinstance(load, first_order_loads)), CoveredEnds())
     model = dataclasses.replace(model, loads=loads)
     for values in ({}, {"column.Ca_t": 0.3, "column.Ca_z": 1.4, "pontoon.Ca_z": 0.2, "covered_ends.share": 0.7}):
         changed = model.with_values(values)
         for omega in (0.35, 0.6, 1.3):
             sea = waves(omega)
             expected = (np.asarray(forces(table(), np.array([omega])))[:, 0] * np.exp(0.4j)).real
-            found = force(changed, changed.through(sea))
-            assert_allclose(found, expected, atol=2e-3 * np.abs(expected).max() + 1e3)
+            acting_force = force(changed, changed.through(sea))
+            assert_allclose(acting_force, expected, atol=2e-3 * np.abs(expected).max() + 1e3)
 
 
 @pytest.mark.slow
@@ -73,8 +73,10 @@ def test_no_share_leaves_the_strips_alone() -> None:
 def test_second_order_forces_stay() -> None:
     """What the surface does to the wet length is that of the strips: the correction is linear in the waves."""
     model, plain = corrected(), jh.load_model("volturnus-s")
-    found = [force(model, model.through(waves(0.6, amplitude=a))) - force(plain, waves(0.6, amplitude=a)) for a in (0.5, 2.0)]
-    assert_allclose(4 * found[0], found[1], rtol=1e-9)
+    corrections = [
+        force(model, model.through(waves(0.6, amplitude=a))) - force(plain, waves(0.6, amplitude=a)) for a in (0.5, 2.0)
+    ]
+    assert_allclose(4 * corrections[0], corrections[1], rtol=1e-9)
 
 
 def test_several_headings() -> None:
@@ -83,8 +85,8 @@ def test_several_headings() -> None:
     headings = np.radians([-60.0, -20.0, 20.0, 60.0])
     by_heading = DirectionalExcitation.of(headings, [table(int(seed)) for seed in rng.integers(0, 99, 4)])
     model = corrected(1.0, by_heading, wetting="mean")
-    kept = (StripInertia, EndInertia, DiffractionCorrection)
-    model = dataclasses.replace(model, loads=tuple(load for load in model.loads if isinstance(load, kept)))
+    first_order_loads = (StripInertia, EndInertia, DiffractionCorrection)
+    model = dataclasses.replace(model, loads=tuple(load for load in model.loads if isinstance(load, first_order_loads)))
     sea = waves(0.6, heading=float(headings[2]))
     expected = (np.asarray(forces(by_heading.towards(float(headings[2])), np.array([0.6])))[:, 0] * np.exp(0.4j)).real
     assert_allclose(force(model, model.through(sea)), expected, atol=2e-3 * np.abs(expected).max() + 1e3)
@@ -98,9 +100,9 @@ def test_in_small_waves_it_moves_as_with_the_table() -> None:
     around = with_diffraction_correction(whole)
     spectrum = jh.spectrum_components(lambda w: jh.jonswap(w, 0.01, 9.0), 600.0, WATER, low=0.06, cutoff=0.2, seed=3)
     sea, times = jh.IrregularSea(spectrum, WATER), np.arange(0.0, 600.0, 1.0)
-    found = [jh.simulate(one, times, sea) for one in (whole, around)]
+    motions = [jh.simulate(variant, times, sea) for variant in (whole, around)]
     for dof in ("surge", "heave", "pitch"):
-        a, b = (np.asarray(one[dof])[len(one[dof]) // 3 :] for one in found)
+        a, b = (np.asarray(response[dof])[len(response[dof]) // 3 :] for response in motions)
         assert np.std(a - b) < 0.01 * np.std(a), dof
 
 

@@ -57,10 +57,10 @@ def test_angles_have_the_law_of_spreading(s: float) -> None:
 def test_direction_and_width_are_those_of_closed_forms(s: float) -> None:
     """Mean resultant s / (s + 1), width sqrt(2 / (s + 1)), over many equally high waves and in a sea."""
     share = equal_energy_shares(1, 20000, 3)
-    found = circular_moments(math.radians(170) + spread_angle(s, share), np.ones(20000))
-    assert found.mean == pytest.approx(math.radians(170), abs=1e-3)
-    assert found.resultant == pytest.approx(s / (s + 1), abs=1.5e-3)  # two standard errors at s = 2
-    assert found.width == pytest.approx(math.sqrt(2 / (s + 1)), rel=3e-3)
+    moments = circular_moments(math.radians(170) + spread_angle(s, share), np.ones(20000))
+    assert moments.mean == pytest.approx(math.radians(170), abs=1e-3)
+    assert moments.resultant == pytest.approx(s / (s + 1), abs=1.5e-3)  # two standard errors at s = 2
+    assert moments.width == pytest.approx(math.sqrt(2 / (s + 1)), rel=3e-3)
     waves = drawn(WaveSystem(3.0, 9.0, 2.0, 170.0, s))
     of_sea = circular_moments(np.asarray(waves.heading), energy(waves))
     assert abs(of_sea.mean - math.radians(170)) < 0.02 and of_sea.width == pytest.approx(math.sqrt(2 / (s + 1)), rel=0.05)
@@ -98,8 +98,10 @@ def test_without_spreading_it_is_the_long_crested_sea(amplitudes: str) -> None:
     plain = spectrum_components(
         lambda w: spectra.jonswap(w, 3.0, 9.0, 2.0), HOUR, WATER, heading=math.radians(30), amplitudes=amplitudes, **BAND
     )
-    for one, other in zip(jax.tree.leaves(plain), jax.tree.leaves(drawn(WaveSystem(3, 9, 2, 30.0), amplitudes=amplitudes))):
-        assert (np.asarray(one) == np.asarray(other)).all()
+    for long_crested, spread in zip(
+        jax.tree.leaves(plain), jax.tree.leaves(drawn(WaveSystem(3, 9, 2, 30.0), amplitudes=amplitudes))
+    ):
+        assert (np.asarray(long_crested) == np.asarray(spread)).all()
     short = drawn(WaveSystem(3, 9, 2, 30.0, 5.0), amplitudes=amplitudes)
     assert (np.asarray(short.amplitude) == np.asarray(plain.amplitude)).all() and np.ptp(np.asarray(short.heading)) > 1
     assert (np.asarray(short.phase) == np.asarray(plain.phase)).all()
@@ -108,8 +110,8 @@ def test_without_spreading_it_is_the_long_crested_sea(amplitudes: str) -> None:
 def test_two_systems_of_one_direction_are_the_sum_of_their_spectra() -> None:
     swell, wind = WaveSystem(2.0, 14.0, 5.0, 40.0), WaveSystem(1.5, 7.0, 1.5, 40.0)
     waves = drawn(swell, wind)
-    both = sum(np.asarray(spectra.jonswap(waves.omega, one.hs, one.tp, one.gamma)) for one in (swell, wind))
-    assert_allclose(energy(waves), both * 2 * math.pi / float(waves.period), rtol=1e-12)
+    summed = sum(np.asarray(spectra.jonswap(waves.omega, system.hs, system.tp, system.gamma)) for system in (swell, wind))
+    assert_allclose(energy(waves), summed * 2 * math.pi / float(waves.period), rtol=1e-12)
     assert (np.asarray(waves.heading) == math.radians(40)).all() and SystemsSpectrum((swell, wind)).long_crested
 
 
@@ -143,17 +145,17 @@ def test_a_measured_spectrum_comes_from_csv_and_netcdf(tmp_path: Path) -> None:
     data = xr.Dataset({"efth": (("time", "dir", "freq"), efth.T[None, ::-1])}, {"freq": f, "dir": direction[::-1]})
     data["efth"].attrs["units"] = "m2 s degree-1"
     data.to_netcdf(tmp_path / "sea.nc")
-    other = read_directional_spectrum(tmp_path / "sea.nc", 30.0)
-    assert_allclose(other.values, read.values, rtol=1e-12)
-    assert_allclose(other.heading, read.heading, rtol=1e-12)
+    from_netcdf = read_directional_spectrum(tmp_path / "sea.nc", 30.0)
+    assert_allclose(from_netcdf.values, read.values, rtol=1e-12)
+    assert_allclose(from_netcdf.heading, read.heading, rtol=1e-12)
     waves = directional_components(read, HOUR, WATER, **BAND)
     s_f = np.interp(np.asarray(waves.omega) / (2 * math.pi), f, efth.sum(axis=1) * 10.0, 0.0, 0.0)
     assert_allclose(energy(waves), s_f / float(waves.period), rtol=1e-9)
-    found = circular_moments(np.asarray(waves.heading), energy(waves))
-    assert abs(math.remainder(found.mean + 0.5 * math.pi, 2 * math.pi)) < 0.02
+    moments = circular_moments(np.asarray(waves.heading), energy(waves))
+    assert abs(math.remainder(moments.mean + 0.5 * math.pi, 2 * math.pi)) < 0.02
     # even parts of bins of 10 deg take sinc(5 deg) of the resultant
     bins = math.sin(math.radians(5)) / math.radians(5)
-    assert found.resultant == pytest.approx(8 / 9 * bins, abs=0.01)
+    assert moments.resultant == pytest.approx(8 / 9 * bins, abs=0.01)
 
 
 def test_wavespectra_has_the_same_height_and_direction(tmp_path: Path) -> None:
@@ -202,7 +204,7 @@ def double_sum(waves: Components, depth: float, gravity: float) -> np.ndarray:
     a = np.asarray(complex_amplitude(waves))
     k, kv, r = np.asarray(waves.wavenumber), np.asarray(vector(waves)).T, np.asarray(waves.omega) ** 2 / gravity
     first, last = waves.harmonics
-    found = np.zeros(2 * last + 1, complex)
+    elevation = np.zeros(2 * last + 1, complex)
     for n in range(a.size):
         for m in range(n + 1):
             for sign in (1, -1):
@@ -216,8 +218,8 @@ def double_sum(waves: Components, depth: float, gravity: float) -> np.ndarray:
                 d = top / (beat**2 - size * math.tanh(size * depth))
                 b = 0.25 * ((d - (dot - sign * r[n] * r[m])) / (root_n * root_m) + r[n] + r[m])
                 pair = a[n] * (a[m] if sign > 0 else a[m].conj())
-                found[(first + n) + sign * (first + m)] += (1 if n == m else 2) * b * pair
-    return found
+                elevation[(first + n) + sign * (first + m)] += (1 if n == m else 2) * b * pair
+    return elevation
 
 
 @pytest.mark.parametrize("depth", [200.0, 25.0])
@@ -229,9 +231,9 @@ def test_second_order_takes_each_pair_at_its_own_headings(depth: float) -> None:
     waves = components(rng.uniform(0.1, 1, n), omega, water, heading=heading, phase=phase, first=first)
     sea = jh.IrregularSea(waves, water, 2)
     expected = double_sum(waves, depth, float(water.gravity))
-    found = np.array(sea.bound_elevation())
+    bound = np.array(sea.bound_elevation())
     assert not sea.long_crested
-    assert np.abs(found - expected)[1:].max() < 1e-9 * np.abs(expected).max()
+    assert np.abs(bound - expected)[1:].max() < 1e-9 * np.abs(expected).max()
     times = np.linspace(0.0, 120.0, 7)
     exact = sea.direct()
     direct = [float(elevation(exact, t, np.zeros((2, 1)))[0]) for t in times.tolist()]
@@ -246,8 +248,8 @@ def test_a_sweep_has_the_sea_of_simulate() -> None:
     plan, _ = plan_of(validate(Sweep, {**made, "order": 1, "low": 0.03, "cutoff": 0.3, "seeds": [4]}, "sweep"), "sweep")
     assert Plan.from_json(plan.to_json()) == plan
     setup = Setup(plan, jh.load_model("oc3-hywind"), np.arange(3.0), 0.2, None)
-    found, own = sea_of(setup, plan.run(0)), drawn(WaveSystem(3.0, 9.0, 2.0, 30.0, 5.0))
-    assert (np.asarray(found.components.heading) == np.asarray(own.heading)).all() and not found.long_crested
+    sea, own = sea_of(setup, plan.run(0)), drawn(WaveSystem(3.0, 9.0, 2.0, 30.0, 5.0))
+    assert (np.asarray(sea.components.heading) == np.asarray(own.heading)).all() and not sea.long_crested
 
 
 def test_second_order_of_too_many_pairs_is_refused() -> None:

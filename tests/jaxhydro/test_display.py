@@ -41,9 +41,9 @@ def test_a_model_in_a_few_lines(model: jh.Model) -> None:
 
 
 def test_what_is_not_as_usual_is_in_a_models_text(model: jh.Model) -> None:
-    other = model.with_conventions(wetting="mean").with_effect(jh.WATER_EFFECTS["current"]())
-    assert "conventions: wetting mean" in repr(other)
-    assert "water effects: Current" in repr(other)
+    changed = model.with_conventions(wetting="mean").with_effect(jh.WATER_EFFECTS["current"]())
+    assert "conventions: wetting mean" in repr(changed)
+    assert "water effects: Current" in repr(changed)
 
 
 def test_a_motion_in_a_few_lines(response: jh.Response) -> None:
@@ -59,10 +59,10 @@ def test_seas_in_a_few_lines() -> None:
     water = jh.Environment(1025.0, 200.0)
     waves = components(jnp.array([0.3, 0.4]), 2 * jnp.pi * jnp.array([0.1, 0.11]), water)
     assert repr(waves) == "Components: 2 wave components, 0.1 to 0.11 Hz: Hs 1.41 m, heading 0 deg"
-    said = repr(jh.IrregularSea(waves, water, 2, ramp=50.0))
-    assert said.startswith("IrregularSea of order 2 in water 200 m deep, stretching vertical, grown from rest over 50 s\n")
-    one = jax.tree.map(lambda x: x[:1], waves)
-    assert repr(one) == "Components: one wave component of 0.3 m, 10 s, heading 0 deg"
+    text = repr(jh.IrregularSea(waves, water, 2, ramp=50.0))
+    assert text.startswith("IrregularSea of order 2 in water 200 m deep, stretching vertical, grown from rest over 50 s\n")
+    first = jax.tree.map(lambda x: x[:1], waves)
+    assert repr(first) == "Components: one wave component of 0.3 m, 10 s, heading 0 deg"
     shown: list[str] = []
     jax.jit(lambda w: shown.append(repr(w)))(waves)
     assert "f64[2]" in shown[0] and "\n" not in shown[0].split("(")[0]
@@ -112,10 +112,10 @@ def test_a_motion_as_a_data_set(response: jh.Response, tmp_path: Path) -> None:
     data = response.to_xarray()
     assert list(data.data_vars) == list(jh.DOFS) and data["time"].attrs["units"] == "s"
     assert data.attrs["Conventions"].startswith("CF-")
-    assert {name: one.attrs["units"] for name, one in data.items()} == {dof: "m" for dof in jh.DOFS[:3]} | {
+    assert {name: variable.attrs["units"] for name, variable in data.items()} == {dof: "m" for dof in jh.DOFS[:3]} | {
         dof: "degree" for dof in jh.DOFS[3:]
     }
-    assert {one.attrs["standard_name"] for one in data.values()} == {f"platform_{dof}" for dof in jh.DOFS}
+    assert {variable.attrs["standard_name"] for variable in data.values()} == {f"platform_{dof}" for dof in jh.DOFS}
     assert_allclose(data["pitch"], 3 * np.sin(TIMES), atol=1e-12)
     data.to_netcdf(tmp_path / "motion.nc", engine="h5netcdf")
     with xr.open_dataset(tmp_path / "motion.nc", engine="h5netcdf", decode_times=False) as read:

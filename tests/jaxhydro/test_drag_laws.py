@@ -187,9 +187,9 @@ def driven(model: jh.Model, speed, times: np.ndarray, direction=(1.0, 0.0)) -> t
     def advance(memory, t):
         total, first = at(memory, t)
         middle = at(_moved(memory, first, step / 2), t + step / 2)[1]
-        again = at(_moved(memory, middle, step / 2), t + step / 2)[1]
-        last = at(_moved(memory, again, step), t + step)[1]
-        mean = jax.tree.map(lambda a, b, c, d: (a + 2 * b + 2 * c + d) / 6, first, middle, again, last)
+        middle_again = at(_moved(memory, middle, step / 2), t + step / 2)[1]
+        last = at(_moved(memory, middle_again, step), t + step)[1]
+        mean = jax.tree.map(lambda a, b, c, d: (a + 2 * b + 2 * c + d) / 6, first, middle, middle_again, last)
         return _moved(memory, mean, step), (total[:2], memory)
 
     _, (forces, memories) = jax.jit(lambda m: jax.lax.scan(advance, m, jnp.asarray(times)))(model.rest().memory)
@@ -481,12 +481,12 @@ def test_what_is_worked_out_at_rest() -> None:
     """Equilibrium and natural modes are those of plain drag, whose laws do nothing to first order; a model's damping is that
     of fast motion where slow one is high-passed, and of K = 0 where it follows K."""
     plain, changed = small(None, None), small(HIGH_PASS, HIGH_PASS)
-    rest = jh.equilibrium(changed)
-    assert_allclose(rest, jh.equilibrium(plain), atol=1e-12)
-    assert_allclose(jh.natural_modes(changed, rest).period, jh.natural_modes(plain, rest).period, rtol=1e-12)
-    constant, filtered = (model_damping(model, "heave", rest) for model in (plain, changed))
+    equilibrium = jh.equilibrium(changed)
+    assert_allclose(equilibrium, jh.equilibrium(plain), atol=1e-12)
+    assert_allclose(jh.natural_modes(changed, equilibrium).period, jh.natural_modes(plain, equilibrium).period, rtol=1e-12)
+    constant, filtered = (model_damping(model, "heave", equilibrium) for model in (plain, changed))
     assert filtered.quadratic == pytest.approx(constant.quadratic, rel=1e-9)
-    powers = model_damping(small(KEULEGAN_CARPENTER, KEULEGAN_CARPENTER), "heave", rest)
+    powers = model_damping(small(KEULEGAN_CARPENTER, KEULEGAN_CARPENTER), "heave", equilibrium)
     most = ((0.1**2) / (5.0**2 + 0.1**2)) ** (-1 / 6)
     assert powers.quadratic == pytest.approx(most * constant.quadratic, rel=1e-9)
 
@@ -565,7 +565,7 @@ def told(row: dict, members=(COLUMN,)) -> str:
 
 
 @pytest.mark.parametrize(
-    "row, said",
+    "row, expected",
     [
         ({"drag_t": {"law": "high_pas"}}, "column.drag_t.law: expected one of constant, high_pass, keulegan_carpenter"),
         ({"drag_t": {"law": "high_pas"}}, "Did you mean 'high_pass'?"),
@@ -579,8 +579,8 @@ def told(row: dict, members=(COLUMN,)) -> str:
         ({"drag": HIGH_PASS}, "expected a known key"),
     ],
 )
-def test_messages(row: dict, said: str) -> None:
-    assert said in told(row)
+def test_messages(row: dict, expected: str) -> None:
+    assert expected in told(row)
 
 
 def test_a_suction_side_needs_a_column() -> None:

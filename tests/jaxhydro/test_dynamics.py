@@ -124,12 +124,12 @@ def test_order_of_the_schemes_themselves(method: str, order: int, steps: tuple[i
 @pytest.mark.slow
 def test_own_loop_against_diffrax() -> None:
     """The same scheme in this package's loop, either adjoint, and in diffrax, with drag and added mass: one motion."""
-    own, checkpointed, other = (
+    own, checkpointed, by_diffrax = (
         run(hull(), START, jnp.zeros(6), 0.5, 40, *options) for options in (("tsit5",), ("tsit5", "reverse"), ("diffrax",))
     )
     for name in ("position", "rate", "acceleration"):
         exact = getattr(own, name)[:41]
-        for two in (checkpointed, other):
+        for two in (checkpointed, by_diffrax):
             assert_allclose(exact, getattr(two, name)[:41], rtol=1e-10, atol=1e-10 * float(jnp.abs(exact).max()))
 
 
@@ -141,9 +141,9 @@ def test_output_at_recorded_times() -> None:
     for name, tolerance in (("position", 5e-6), ("rate", 2e-5), ("acceleration", 5e-4)):
         rough, exact = np.asarray(getattr(coarse, name)), np.asarray(getattr(fine, name))
         assert np.abs(rough - exact).max() < tolerance * np.abs(exact).max()
-    some = np.array([0, 7, 20, 62])
-    few = jh.simulate(smooth(), times[some], position=START, step=0.25)
-    assert_allclose(few.position, coarse.position[some], rtol=1e-12, atol=1e-12)
+    selected = np.array([0, 7, 20, 62])
+    few = jh.simulate(smooth(), times[selected], position=START, step=0.25)
+    assert_allclose(few.position, coarse.position[selected], rtol=1e-12, atol=1e-12)
 
 
 @one_program
@@ -235,8 +235,8 @@ def test_gradient_by_diffrax_reverse() -> None:
         return (grid.at(jnp.array([3.0, 7.3, 14.9]))[0] ** 2).sum()
 
     ours = jax.jit(jax.grad(lambda s: value(s, "tsit5", "reverse")))(START)
-    theirs = jax.jit(jax.grad(lambda s: value(s, "diffrax", "reverse")))(START)
-    assert_allclose(ours, theirs, rtol=1e-8, atol=1e-8 * float(jnp.abs(ours).max()))
+    by_diffrax = jax.jit(jax.grad(lambda s: value(s, "diffrax", "reverse")))(START)
+    assert_allclose(ours, by_diffrax, rtol=1e-8, atol=1e-8 * float(jnp.abs(ours).max()))
 
 
 # exact motions
@@ -261,9 +261,11 @@ def test_free_body_keeps_its_momentum_and_energy() -> None:
         drift.append(matrix @ velocity)
         energy.append(0.5 * 8e6 * velocity @ velocity + 0.5 * v[3:] @ inertia @ v[3:])
     assert np.ptp(np.array(grid.position)[:601, 5]) > 4.0  # it did turn
-    for kept in (momentum, energy, drift):
-        kept = np.array(kept)
-        assert_allclose(kept, np.broadcast_to(kept[0], kept.shape), rtol=1e-7, atol=1e-7 * np.abs(kept).max())
+    for conserved in (momentum, energy, drift):
+        conserved = np.array(conserved)
+        assert_allclose(
+            conserved, np.broadcast_to(conserved[0], conserved.shape), rtol=1e-7, atol=1e-7 * np.abs(conserved).max()
+        )
 
 
 @pytest.mark.parametrize("damping", [0.0, 3e5, 2e6])
@@ -348,10 +350,10 @@ def test_acceleration_and_its_derivatives() -> None:
             one_program(differentiate(lambda *x, f=f: f(*x) @ weights, argnums=(0, 1, 2)))(*arguments)
             for f in (accelerate, plain)
         )
-        for derivative, other in zip(map(np.asarray, actual), map(np.asarray, expected), strict=True):
-            other = 0.5 * (other + other.T) if derivative.shape == (6, 6) else other
+        for derivative, reference in zip(map(np.asarray, actual), map(np.asarray, expected), strict=True):
+            reference = 0.5 * (reference + reference.T) if derivative.shape == (6, 6) else reference
             derivative = 0.5 * (derivative + derivative.T) if derivative.shape == (6, 6) else derivative
-            assert_allclose(derivative, other, rtol=1e-7, atol=1e-9 * np.abs(other).max())
+            assert_allclose(derivative, reference, rtol=1e-7, atol=1e-9 * np.abs(reference).max())
 
 
 @pytest.mark.slow
@@ -365,10 +367,10 @@ def test_slope_of_the_rate_with_attitude(directions: str) -> None:
     def rate(position):
         return model.rate(jnp.asarray(0.0), eqx.tree_at(lambda s: s.position, state, position), STILL).velocity
 
-    place, size = np.array([0.5, 0.1, 0.2, 0.02, 0.05, 0.03]), 1e-5
-    high, low = (np.stack([rate(place + sign * size * e) for e in np.eye(6)], axis=1) for sign in (1, -1))
+    position, size = np.array([0.5, 0.1, 0.2, 0.02, 0.05, 0.03]), 1e-5
+    high, low = (np.stack([rate(position + sign * size * e) for e in np.eye(6)], axis=1) for sign in (1, -1))
     expected = (high - low) / (2 * size)
-    assert_allclose(one_program(jax.jacfwd(rate))(place), expected, atol=1e-7 * np.abs(expected).max())
+    assert_allclose(one_program(jax.jacfwd(rate))(position), expected, atol=1e-7 * np.abs(expected).max())
 
 
 # statics

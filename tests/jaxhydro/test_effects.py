@@ -88,9 +88,9 @@ def convolved(t: float, y: np.ndarray) -> list[float]:
 
 def two_masses(t: float, y: np.ndarray) -> list[float]:
     """Hull and 9e5 kg on a spring of period 30 s, zeta = 0.04, in absolute coordinates."""
-    x, v, other, w = y
+    x, v, swinging_mass, w = y
     k, c = 9e5 * (2 * math.pi / 30) ** 2, 2 * 0.04 * 9e5 * (2 * math.pi / 30)
-    pull = k * (other - x) + c * (w - v)
+    pull = k * (swinging_mass - x) + c * (w - v)
     return [v, (-C * x + pull) / M, w, -pull / 9e5]
 
 
@@ -220,12 +220,12 @@ def test_memory_of_a_platform_held_off_its_rest() -> None:
     assert_allclose(settles(hysteresis(), -position), -settled, rtol=1e-12)
     slope = one_program(jax.jacfwd(lambda q: hysteresis().settled(q)))(np.zeros(6))
     assert_allclose(slope, [[1 / 0.4, 0, 0, 0, 0, 0]], rtol=1e-12)
-    memory, rest = jax.tree.map(np.asarray, (rig().settled(on_device(position)), rig().rest().memory))
-    for load, held, other in zip(rig().loads, memory, rest, strict=True):
+    memory, undisturbed = jax.tree.map(np.asarray, (rig().settled(on_device(position)), rig().rest().memory))
+    for load, held, unheld in zip(rig().loads, memory, undisturbed, strict=True):
         if isinstance(load, Hysteresis):
-            assert held.shape == other.shape and (held != other).all()
+            assert held.shape == unheld.shape and (held != unheld).all()
         else:
-            assert jax.tree.all(jax.tree.map(np.array_equal, held, other))
+            assert jax.tree.all(jax.tree.map(np.array_equal, held, unheld))
 
 
 def test_nothing_leaks_from_a_memory_at_rest() -> None:
@@ -289,8 +289,8 @@ def test_eigenfrequencies_with_a_hidden_oscillator() -> None:
     model = model_of(rig(), rig().loads[0], oscillator)
     flat, shape = ravel_pytree(model.rest())
     slope = jax.jit(jax.jacfwd(lambda y: ravel_pytree(model.rate(jnp.zeros(()), shape(y), jh.StillWater()))[0]))(flat)
-    kept = np.array([0, 6, 12, 13])  # surge, its rate, the memory
-    eigenvalues = np.linalg.eigvals(np.asarray(slope)[np.ix_(kept, kept)])
+    states = np.array([0, 6, 12, 13])  # surge, its rate, the memory
+    eigenvalues = np.linalg.eigvals(np.asarray(slope)[np.ix_(states, states)])
     m, w = 9e5, 2 * math.pi / 30
     k, c = m * w**2, 2 * 0.04 * m * w
     mass, damping = np.diag([M, m]), c * np.array([[1, -1], [-1, 1]])
@@ -380,8 +380,8 @@ def floating() -> jh.Model:
 def changed(model: jh.Model, mass: float, centre: np.ndarray, inertia: np.ndarray) -> jh.Model:
     """The model with another rigid body and its weight."""
     body = type(model.body)(jnp.asarray(mass), jnp.asarray(centre), jnp.asarray(inertia))
-    kept = next(load for load in model.loads if isinstance(load, Buoyancy))
-    return eqx.tree_at(lambda m: m.body, model_of(model, Weight(body.mass, body.centre), kept), body)
+    buoyancy = next(load for load in model.loads if isinstance(load, Buoyancy))
+    return eqx.tree_at(lambda m: m.body, model_of(model, Weight(body.mass, body.centre), buoyancy), body)
 
 
 def assert_alike(first: jh.Model, second: jh.Model) -> None:

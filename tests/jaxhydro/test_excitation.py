@@ -82,10 +82,10 @@ def test_it_takes_the_place_of_the_strips_own() -> None:
     own, _ = acts(strips, AWAY, REST, (None,) * 2, sea, 20.0)
     turn = np.asarray(rotation(AWAY[3:]))
     earth = by_sum(irregular(), 20.0, forces(), AWAY[:2])
-    theirs = np.concatenate([turn.T @ earth[:3], turn.T @ earth[3:]])
+    table_force = np.concatenate([turn.T @ earth[:3], turn.T @ earth[3:]])
     for share in (0.0, 0.4, 1.0):
         actual, _ = acts(model.with_values({"computed_excitation.share": share}), AWAY, REST, model.rest().memory, sea, 20.0)
-        assert_allclose(actual, (1 - share) * own + share * theirs, atol=1e-9 * np.abs(theirs).max())
+        assert_allclose(actual, (1 - share) * own + share * table_force, atol=1e-9 * np.abs(table_force).max())
     still = [
         np.asarray(model_alone.rate(jnp.zeros(()), model_alone.rest(), jh.StillWater()).velocity)
         for model_alone in (
@@ -149,7 +149,7 @@ def test_added_mass_does_not_follow_the_wetting() -> None:
     """With a computed force, added mass is that of the hull wet at rest. Without one it follows waves and heave."""
     sea, heaved = irregular().direct(), np.array([0.0, 0, -2.0, 0, 0, 0])
     load = ComputedExcitation(Excitation.of(GRID, forces()), 1.0)
-    rest, wet = (build(COLUMN, PONTOON, wetting=wetting) for wetting in ("mean", "instantaneous"))
+    still, wet = (build(COLUMN, PONTOON, wetting=wetting) for wetting in ("mean", "instantaneous"))
 
     @eqx.filter_jit
     def of(model: jh.Model, position: jax.Array) -> jax.Array:
@@ -159,7 +159,7 @@ def test_added_mass_does_not_follow_the_wetting() -> None:
     def masses(model: jh.Model, position: np.ndarray) -> np.ndarray:
         return np.asarray(of(model, jnp.asarray(position)))
 
-    expected = masses(rest, heaved)
+    expected = masses(still, heaved)
     with_force = wet.with_effect(load)
     assert_allclose(masses(with_force, heaved), expected, rtol=1e-12)
     half = masses(with_force.with_values({"computed_excitation.share": 0.5}), heaved)
@@ -279,10 +279,13 @@ def test_a_platform_file_names_one(tmp_path: Path) -> None:
     effects = {waves: [candidate.effect for candidate in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
     assert "computed_excitation" in effects[True] and "computed_excitation" not in effects[False]
     np.savetxt(tmp_path / "hull.12d", [[p, q, 0, 0, 1, 1.0, 0, 1.0, 0] for p in (8.0, 12.0) for q in (8.0, 12.0) if p <= q])
-    both = "\nexcitation: {file: hull.3, use: candidate}\ndrift: {file: hull.12d, use: candidate}\n"
-    path.write_text(text + both, encoding="utf-8")
-    some = {candidate.effect: candidate for candidate in catalogue(jh.load_model(path), scales, True, 1.0)[0]}
-    assert some["potential_flow"].amplitudes == (*some["computed_excitation"].amplitudes, *some["drift_transfer"].amplitudes)
+    tables = "\nexcitation: {file: hull.3, use: candidate}\ndrift: {file: hull.12d, use: candidate}\n"
+    path.write_text(text + tables, encoding="utf-8")
+    by_effect = {candidate.effect: candidate for candidate in catalogue(jh.load_model(path), scales, True, 1.0)[0]}
+    assert by_effect["potential_flow"].amplitudes == (
+        *by_effect["computed_excitation"].amplitudes,
+        *by_effect["drift_transfer"].amplitudes,
+    )
     path.write_text(text + "\nexcitation: {file: none.3}\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"none\.3: expected a \.3 file, found no such file"):
         jh.load_model(path)
@@ -327,5 +330,5 @@ def test_openfast_has_the_same_force() -> None:
     x = np.asarray(one_program(Excitation.at)(excitation, omega))
     for i, channel in ((0, "B1WvsF1xi"), (2, "B1WvsF1zi"), (4, "B1WvsM1yi")):
         ours = (np.exp(1j * np.outer(time, omega)) @ (x[i] * amplitude)).real
-        theirs = record[channel].to_numpy(float)[::16]
-        assert np.std(ours - theirs) < 5e-4 * np.std(theirs)
+        openfast = record[channel].to_numpy(float)[::16]
+        assert np.std(ours - openfast) < 5e-4 * np.std(openfast)

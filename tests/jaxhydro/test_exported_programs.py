@@ -55,18 +55,18 @@ def test_the_next_process_does_not_trace(folder):
     """Modules, named tuples, containers and plain values come back."""
     first = exported_jit(results)(STATE, jnp.array(2.0))
     assert traced == ["plain"] and len(list(folder.iterdir())) == 1
-    again = exported_jit(results)(STATE, jnp.array(3.0))  # another function of the same name is what another process has
+    second = exported_jit(results)(STATE, jnp.array(3.0))  # another function of the same name is what another process has
     assert traced == ["plain"]
-    assert jax.tree.structure(first) == jax.tree.structure(again)
-    for one, other in zip(jax.tree.leaves(first), jax.tree.leaves(again), strict=True):
-        assert jax.typeof(one) == jax.typeof(other) if eqx.is_array(one) else one == other
-    assert type(again[0]["moved"]) is jh.State and again[0]["list"] == [None, True, 2, 0.5, "plain"]
-    assert_allclose(again[0]["moved"].position, 3 * np.arange(6.0), rtol=1e-15)
-    assert float(again[1][0]) == 45.0 and float(again[0]["moved"].memory["memory"]) == 3.0
+    assert jax.tree.structure(first) == jax.tree.structure(second)
+    for first_leaf, second_leaf in zip(jax.tree.leaves(first), jax.tree.leaves(second), strict=True):
+        assert jax.typeof(first_leaf) == jax.typeof(second_leaf) if eqx.is_array(first_leaf) else first_leaf == second_leaf
+    assert type(second[0]["moved"]) is jh.State and second[0]["list"] == [None, True, 2, 0.5, "plain"]
+    assert_allclose(second[0]["moved"].position, 3 * np.arange(6.0), rtol=1e-15)
+    assert float(second[1][0]) == 45.0 and float(second[0]["moved"].memory["memory"]) == 3.0
 
 
 @pytest.mark.parametrize(
-    "others",
+    "arguments",
     [
         (STATE, jnp.array(2.0), "other"),
         (STATE, jnp.array(2.0, jnp.float32)),
@@ -77,13 +77,13 @@ def test_the_next_process_does_not_trace(folder):
         (eqx.tree_at(lambda s: s.memory, STATE, {"other": jnp.array(3.0)}), jnp.array(2.0)),
     ],
 )
-def test_other_arguments_are_another_program(folder, others):
+def test_other_arguments_are_another_program(folder, arguments):
     exported_jit(results)(STATE, jnp.array(2.0))
-    expected = results(*others)
+    expected = results(*arguments)
     traced.clear()
-    found = exported_jit(results)(*others)
+    returned = exported_jit(results)(*arguments)
     assert len(traced) == 1 and len(list(folder.iterdir())) == 2
-    assert eqx.tree_equal(expected, found, rtol=1e-7)
+    assert eqx.tree_equal(expected, returned, rtol=1e-7)
 
 
 def test_other_sources_are_another_program(folder, monkeypatch):
@@ -179,8 +179,8 @@ def test_a_decay_is_the_same(folder):
     times = jnp.arange(0.0, 20.0, 0.5)
     arguments = (model, jh.StillWater(), start, times, jnp.array(0.25), 80, "ab4", "forward")
     plain, _ = eqx.filter_jit(simulate_steps.__wrapped__)(*arguments)
-    kept, grid = simulate_steps(*arguments)
-    assert type(kept) is jh.Response and type(grid).__name__ == "Grid"
+    exported, grid = simulate_steps(*arguments)
+    assert type(exported) is jh.Response and type(grid).__name__ == "Grid"
     assert any(path.stat().st_size > 10_000 for path in folder.iterdir())
-    for one, other in zip(jax.tree.leaves(plain), jax.tree.leaves(kept), strict=True):
-        assert_allclose(one, other, rtol=1e-11, atol=1e-11)
+    for plain_leaf, exported_leaf in zip(jax.tree.leaves(plain), jax.tree.leaves(exported), strict=True):
+        assert_allclose(plain_leaf, exported_leaf, rtol=1e-11, atol=1e-11)

@@ -42,8 +42,8 @@ def document(*guided: dict, **changes: Any) -> dict:
     } | changes
 
 
-def carriage(*moves: str, point: Any = POINT, **more: Any) -> dict:
-    return {"name": "carriage", "mass": CARRIAGE, "point": list(point), "moves": list(moves)} | more
+def carriage(*moves: str, point: Any = POINT, **keys: Any) -> dict:
+    return {"name": "carriage", "mass": CARRIAGE, "point": list(point), "moves": list(moves)} | keys
 
 
 def build(*guided: dict, **changes: Any) -> jh.Model:
@@ -92,10 +92,10 @@ def test_along_all_axes_it_is_a_point_of_the_body() -> None:
     rows = document()["rigid_body"]
     parts = [rows | {"name": "hull"}, {"name": "point", "mass": CARRIAGE, "centre_of_mass": POINT}]
     changes = {"hydrostatics": {"displaced_volume": 1100.0, "C33": 4e5}}
-    one = build(carriage("x", "y", "z", weight=True), **changes)
-    other = build(**changes, rigid_body={"parts": parts})
+    guided = build(carriage("x", "y", "z", weight=True), **changes)
+    rigid = build(**changes, rigid_body={"parts": parts})
     for position, velocity in zip(*samples(), strict=True):
-        assert_allclose(rates(one, position, velocity), rates(other, position, velocity), rtol=1e-10, atol=1e-12)
+        assert_allclose(rates(guided, position, velocity), rates(rigid, position, velocity), rtol=1e-10, atol=1e-12)
 
 
 def test_two_bodies_by_hand() -> None:
@@ -113,10 +113,10 @@ def test_two_bodies_by_hand() -> None:
 
     times = np.arange(0.0, 60.0, 1.0)
     expected = solve_ivp(rate, (0, 60), [4.0, 0.5, 0, 0], t_eval=times, rtol=1e-11, atol=1e-12).y
-    found = jh.free_decay(model, {"surge": 4.0, "pitch": 0.5}, times, step=0.02)
-    assert_allclose(found["surge"], expected[0], atol=1e-5)
-    assert_allclose(found["pitch"], expected[1], atol=1e-6)
-    assert_allclose(found["heave"], 0.0, atol=1e-9)
+    motion = jh.free_decay(model, {"surge": 4.0, "pitch": 0.5}, times, step=0.02)
+    assert_allclose(motion["surge"], expected[0], atol=1e-5)
+    assert_allclose(motion["pitch"], expected[1], atol=1e-6)
+    assert_allclose(motion["heave"], 0.0, atol=1e-9)
 
 
 def periods_of(c: float) -> list[float]:
@@ -128,12 +128,12 @@ def periods_of(c: float) -> list[float]:
 
 @pytest.mark.parametrize("c", [-6.0, 0.0, 8.0])
 def test_natural_periods_in_closed_form(c: float) -> None:
-    found = natural_modes(build(carriage("x", point=[0, 0, c])))
-    pitch, surge = sorted([found.of("surge"), found.of("pitch")])
+    modes = natural_modes(build(carriage("x", point=[0, 0, c])))
+    pitch, surge = sorted([modes.of("surge"), modes.of("pitch")])
     assert_allclose([pitch, surge], periods_of(c), rtol=1e-9)
     without = natural_modes(build())
     for dof in ("heave", "roll", "sway", "yaw"):
-        assert found.of(dof) == pytest.approx(without.of(dof), rel=1e-12)
+        assert modes.of(dof) == pytest.approx(without.of(dof), rel=1e-12)
 
 
 @pytest.mark.slow
@@ -143,8 +143,8 @@ def test_at_the_reference_point_it_is_added_mass(axis: str, entry: str) -> None:
     guided = build(carriage(axis, point=[0, 0, 0]))
     added = build(added_mass={entry: CARRIAGE})
     still, velocity = np.zeros(6), np.array([1.0, 2, 3, 0, 0, 0])  # m/s, rad/s
-    place = np.array([3.0, 2.0, 1.0, 0, 0, 0])
-    assert_allclose(rates(guided, place, velocity), rates(added, place, velocity), rtol=1e-14)
+    position = np.array([3.0, 2.0, 1.0, 0, 0, 0])
+    assert_allclose(rates(guided, position, velocity), rates(added, position, velocity), rtol=1e-14)
     for dof in ("surge", "sway", "heave"):
         assert natural_modes(guided).of(dof) == pytest.approx(natural_modes(added).of(dof), rel=1e-12)
     turned = still + np.array([3.0, 2, 1, 0, 0, math.pi / 2])
@@ -172,19 +172,19 @@ def test_size_and_balance_are_those_of_the_hull() -> None:
     assert float(rails.size) == float(plain.size) and float(rails.body.mass) == MASS
     about = rails.about("guided_masses.carriage.mass")
     assert about.unit == "kg" and about.lower == 0 and "follows the platform along x" in about.meaning
-    both = build(carriage("x", "y"), {**carriage("z"), "name": "a rod", "mass": 5.0})
-    assert "along x and y" in both.about("guided_masses.carriage.mass").meaning
-    assert float(both.values["guided_masses.a rod.mass"]) == 5.0
+    two_masses = build(carriage("x", "y"), {**carriage("z"), "name": "a rod", "mass": 5.0})
+    assert "along x and y" in two_masses.about("guided_masses.carriage.mass").meaning
+    assert float(two_masses.values["guided_masses.a rod.mass"]) == 5.0
 
 
 def test_masses_keep_their_places_through_jax() -> None:
     """JAX sorts the keys of mappings; a mass is still that of its own point."""
     guided = ({**carriage("x"), "name": "b"}, {**carriage("z", point=[-9, 2, 1]), "name": "a", "mass": 7e4})
     (position, *_), (velocity, *_) = samples(1)
-    one, other = build(*guided), build(*guided[::-1])
-    sorted_keys = jax.tree.map(lambda x: x, one)
-    assert_allclose(rates(one, position, velocity), rates(other, position, velocity), rtol=1e-12)
-    assert_allclose(rates(sorted_keys, position, velocity), rates(other, position, velocity), rtol=1e-12)
+    model, reordered = build(*guided), build(*guided[::-1])
+    sorted_keys = jax.tree.map(lambda x: x, model)
+    assert_allclose(rates(model, position, velocity), rates(reordered, position, velocity), rtol=1e-12)
+    assert_allclose(rates(sorted_keys, position, velocity), rates(reordered, position, velocity), rtol=1e-12)
     assert "along z" in sorted_keys.about("guided_masses.a.mass").meaning
 
 
@@ -212,8 +212,8 @@ def test_a_decay_finds_the_mass(tmp_path: Path) -> None:
         "calibrate": {"free": ["guided_masses.*", "linear_damping.B11"]},
     }
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
-    found = calibrate(load_campaign(tmp_path))
-    assert found.parameters[label].value == pytest.approx(3.3e5, rel=1e-3)
+    result = calibrate(load_campaign(tmp_path))
+    assert result.parameters[label].value == pytest.approx(3.3e5, rel=1e-3)
 
 
 BROKEN = [

@@ -164,9 +164,9 @@ def test_drift_tables_are_read_for_all_headings(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "hull.12d", rows)
     actual = read_directional_transfer(tmp_path / "hull.12d", 1025.0, 9.81, length=2.0)
     for beta in (0.0, 30.0):
-        own, other = (
+        own, by_heading = (
             read_transfer(tmp_path / "hull.12d", 1025.0, 9.81, length=2.0, heading=beta),
             actual.towards(math.radians(beta)),
         )
         force = one_program(lambda table: table.force(table.filters @ np.array([1.0, 0.3j, -0.2])))
-        assert_allclose(force(other), force(own), rtol=1e-9)
+        assert_allclose(force(by_heading), force(own), rtol=1e-9)

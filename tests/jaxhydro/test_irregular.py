@@ -85,14 +85,14 @@ def test_pierson_moskowitz_in_closed_form() -> None:
     peak = 2 * math.pi / TP
     a, b = 5 / 16 * HS**2 * peak**4, 1.25 * peak**4
     omega = jnp.linspace(0.0, 60.0, 600_001)
-    found = moments(omega, spectra.pierson_moskowitz(omega, HS, TP))
-    assert float(found.significant_height) == pytest.approx(HS, rel=1e-6)
-    assert float(found.two) == pytest.approx(a / 4 * math.sqrt(math.pi / b) - a / (2 * 60**2), rel=1e-7)
-    assert float(found.one) == pytest.approx(a / 4 * math.gamma(0.75) * b**-0.75, rel=1e-5)
-    assert float(found.minus_one) == pytest.approx(a / 4 * math.gamma(1.25) * b**-1.25, rel=1e-7)
-    assert float(found.zero_crossing_period) == pytest.approx(TP * (4 / (5 * math.pi)) ** 0.25, rel=2e-3)
-    assert float(found.energy_period) == pytest.approx(0.857 * TP, rel=1e-3)
-    assert float(found.mean_period) == pytest.approx(0.772 * TP, rel=1e-3)
+    spectral_moments = moments(omega, spectra.pierson_moskowitz(omega, HS, TP))
+    assert float(spectral_moments.significant_height) == pytest.approx(HS, rel=1e-6)
+    assert float(spectral_moments.two) == pytest.approx(a / 4 * math.sqrt(math.pi / b) - a / (2 * 60**2), rel=1e-7)
+    assert float(spectral_moments.one) == pytest.approx(a / 4 * math.gamma(0.75) * b**-0.75, rel=1e-5)
+    assert float(spectral_moments.minus_one) == pytest.approx(a / 4 * math.gamma(1.25) * b**-1.25, rel=1e-7)
+    assert float(spectral_moments.zero_crossing_period) == pytest.approx(TP * (4 / (5 * math.pi)) ** 0.25, rel=2e-3)
+    assert float(spectral_moments.energy_period) == pytest.approx(0.857 * TP, rel=1e-3)
+    assert float(spectral_moments.mean_period) == pytest.approx(0.772 * TP, rel=1e-3)
 
 
 def test_default_enhancement() -> None:
@@ -118,8 +118,8 @@ def test_spectra_are_differentiable_everywhere() -> None:
 def test_white_noise_and_tables() -> None:
     """m0 = Hs^2/16; straight lines between values, nothing outside."""
     omega = jnp.linspace(0.0, 2.0, 200_001)
-    found = moments(omega, spectra.white_noise(omega, 4.0, 0.3, 1.2))
-    assert float(found.significant_height) == pytest.approx(4.0, rel=1e-4)
+    spectral_moments = moments(omega, spectra.white_noise(omega, 4.0, 0.3, 1.2))
+    assert float(spectral_moments.significant_height) == pytest.approx(4.0, rel=1e-4)
     table = spectra.tabulated(jnp.array([0.1, 0.5, 0.75, 1.0, 1.1]), jnp.array([0.5, 1.0]), jnp.array([2.0, 4.0]))
     assert_allclose(table, [0, 2, 3, 4, 0])
 
@@ -191,16 +191,16 @@ def test_nothing_repeats_within_the_duration() -> None:
 
 def test_seeds() -> None:
     """The same seed gives the same sea, another another; bands and options leave each other's draws as they are."""
-    one = drawn()
-    assert eqx.tree_equal(one, drawn())
-    assert not np.allclose(one.phase, drawn(seed=2).phase)
+    sea = drawn()
+    assert eqx.tree_equal(sea, drawn())
+    assert not np.allclose(sea.phase, drawn(seed=2).phase)
     wider = drawn(low=0.02, cutoff=0.5)
-    start = one.first - wider.first
-    assert_allclose(wider.phase[start : start + len(one.phase)], one.phase, rtol=0)
-    other = drawn(amplitudes="rayleigh", spreading=8.0)
-    assert_allclose(other.phase, one.phase, rtol=0)
-    assert_allclose(drawn(amplitudes="rayleigh").amplitude, other.amplitude, rtol=0)
-    assert np.abs(np.asarray(one.phase)).max() <= math.pi
+    start = sea.first - wider.first
+    assert_allclose(wider.phase[start : start + len(sea.phase)], sea.phase, rtol=0)
+    varied = drawn(amplitudes="rayleigh", spreading=8.0)
+    assert_allclose(varied.phase, sea.phase, rtol=0)
+    assert_allclose(drawn(amplitudes="rayleigh").amplitude, varied.amplitude, rtol=0)
+    assert np.abs(np.asarray(sea.phase)).max() <= math.pi
 
 
 def test_phases_are_uniform_and_amplitudes_rayleigh() -> None:
@@ -335,10 +335,10 @@ def test_the_first_order_part_of_a_nonlinear_record(environment) -> None:
     """First-order amplitudes known beforehand, from a record of first and second order at a gauge off the origin."""
     at, waves = (30.0, 10.0), known(environment)
     record = nonlinear(waves, environment, at)
-    found = separated_record(TIMES, record, environment, position=at, heading=0.5, **BAND)
+    separated = separated_record(TIMES, record, environment, position=at, heading=0.5, **BAND)
     size = np.linalg.norm(waves.amplitude)
-    assert found.mismatch < 1e-5 and found.rounds <= 6
-    assert np.linalg.norm(found.waves.complex_amplitude() - waves.complex_amplitude()) < 1e-4 * size
+    assert separated.mismatch < 1e-5 and separated.rounds <= 6
+    assert np.linalg.norm(separated.waves.complex_amplitude() - waves.complex_amplitude()) < 1e-4 * size
     linear = record_components(TIMES, record, environment, position=at, heading=0.5, order=1, **BAND)
     assert np.linalg.norm(linear.complex_amplitude() - waves.complex_amplitude()) > 0.015 * size
     tight = record_components(TIMES, record, environment, position=at, heading=0.5, tolerance=1e-8, **BAND)
@@ -348,9 +348,9 @@ def test_the_first_order_part_of_a_nonlinear_record(environment) -> None:
 def test_a_record_too_steep_for_second_order() -> None:
     """Where the iteration finds no end it stops, gives its best as a value, and the builder says so."""
     record = 40 * elevation(known(), TIMES)
-    found = separated_record(TIMES, record, WATER, heading=0.5, **BAND)
-    assert 1e-4 < found.mismatch <= 1.5 and found.rounds <= 30
-    assert bool(jnp.isfinite(found.waves.amplitude).all())
+    separated = separated_record(TIMES, record, WATER, heading=0.5, **BAND)
+    assert 1e-4 < separated.mismatch <= 1.5 and separated.rounds <= 30
+    assert bool(jnp.isfinite(separated.waves.amplitude).all())
     with pytest.raises(ValueError, match=r"first and second order miss .* Take a cutoff below 0\.2 Hz"):
         record_components(TIMES, record, WATER, heading=0.5, **BAND)
 

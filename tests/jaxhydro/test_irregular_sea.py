@@ -36,22 +36,22 @@ def sea(order: int = 2, duration: float = 200.0, heading: float = 0.0, height: f
 def test_cosine_and_sine() -> None:
     """Against NumPy's, far beyond any phase over a hull."""
     x = np.linspace(-900.0, 900.0, 200_001)
-    for found, exact in zip(one_program(cosine_sine)(x), (np.cos(x), np.sin(x)), strict=True):
-        assert_allclose(found, exact, atol=1e-11)
+    for approximate, exact in zip(one_program(cosine_sine)(x), (np.cos(x), np.sin(x)), strict=True):
+        assert_allclose(approximate, exact, atol=1e-11)
 
 
 def test_weights_reproduce_every_wave() -> None:
     """exp(-ikx) with its profile over depth from those of the supports, at wavenumbers and places of chance."""
     box = Box(75.0, -24.0, 200.0)
-    found = supports(box, 0.36, 0.72)
+    support = supports(box, 0.36, 0.72)
     rng = np.random.default_rng(0)
     k, x, z = rng.uniform(0.0, 0.36, 200), rng.uniform(-75, 75, 50), rng.uniform(-24, 0, 50)
 
     def field(k):
         return np.cosh(k * (z[:, None] + 200)) / np.cosh(k * 200) * np.exp(-1j * k * x[:, None])
 
-    w = np.asarray(one_program(weights)(found.table, found.spacing, k))
-    assert np.abs(field(found.wavenumber) @ w.T - field(k)).max() < 1e-5
+    w = np.asarray(one_program(weights)(support.table, support.spacing, k))
+    assert np.abs(field(support.wavenumber) @ w.T - field(k)).max() < 1e-5
 
 
 def test_a_box_of_many_wavelengths_is_refused() -> None:
@@ -71,10 +71,10 @@ def test_against_direct_summation(order: int, stretching: str, heading: float) -
     along = rng.uniform(-35.0, 35.0, 5)
     points = np.stack([along * np.cos(heading), along * np.sin(heading), np.array([-20.0, -10.0, -3.0, 0.0, 3.0])])
     for time in (10.0, 10.125, 33.5):
-        one, other = (flow(s, time, points, CYLINDERS) for s in (fast, exact))
+        fast_flow, exact_flow = (flow(s, time, points, CYLINDERS) for s in (fast, exact))
         for name in ("velocity", "acceleration", "pressure", "diffracted"):
-            expected = np.asarray(getattr(other, name))
-            assert_allclose(getattr(one, name), expected, atol=1e-5 * np.abs(expected).max(), err_msg=name)
+            expected = np.asarray(getattr(exact_flow, name))
+            assert_allclose(getattr(fast_flow, name), expected, atol=1e-5 * np.abs(expected).max(), err_msg=name)
         surface = [elevation(s, time, points[:2]) for s in (fast, exact)]
         assert_allclose(*surface, atol=5e-5)
         assert_allclose(waves.gauge(np.array([time])), elevation(exact, time, np.zeros((2, 1))), atol=1e-9)
@@ -92,15 +92,15 @@ def test_bound_waves_that_act_at_the_origin() -> None:
     origin = points.at[:2].set(0.0)
     for time in (10.0, 10.125, 33.5):
         now = jnp.asarray(time)
-        found, free = (eqx.filter_jit(s.flow)(now, points, CYLINDERS).earth() for s in (fast, first))
-        both, alone = (s.flow(now, origin, CYLINDERS).earth() for s in (everywhere, first))
+        restricted_flow, free = (eqx.filter_jit(s.flow)(now, points, CYLINDERS).earth() for s in (fast, first))
+        second_order, alone = (s.flow(now, origin, CYLINDERS).earth() for s in (everywhere, first))
         for name in ("velocity", "acceleration", "diffracted"):
-            bound = np.asarray(getattr(both, name) - getattr(alone, name))
+            bound = np.asarray(getattr(second_order, name) - getattr(alone, name))
             expected = np.asarray(getattr(free, name)) + bound * [[1.0], [1.0], [0.0]]
             scale = np.abs(expected).max()
             assert np.abs(bound[:2]).max() > 1e-3 * scale
-            assert_allclose(getattr(found, name), expected, atol=1e-5 * scale, err_msg=name)
-        assert_allclose(found.pressure, free.pressure, atol=1e-5 * np.abs(free.pressure).max())
+            assert_allclose(getattr(restricted_flow, name), expected, atol=1e-5 * scale, err_msg=name)
+        assert_allclose(restricted_flow.pressure, free.pressure, atol=1e-5 * np.abs(free.pressure).max())
         assert_allclose(fast.elevation(now, points[:2]), everywhere.elevation(now, points[:2]), atol=5e-5)
     with pytest.raises(ValueError, match="for simulations"):
         waves.direct()
@@ -117,12 +117,12 @@ def test_slopes_of_the_field() -> None:
         parts = (flow.velocity[:, 0], flow.acceleration[:, 0], flow.pressure, flow.diffracted[:, 0])
         return jnp.concatenate([*parts, fast.elevation(now, p[:2, None])])
 
-    place = jnp.array([12.0, 5.0, -7.0])
-    forward = jax.jacfwd(at)(place)
+    position = jnp.array([12.0, 5.0, -7.0])
+    forward = jax.jacfwd(at)(position)
     step = 1e-4 * np.eye(3)
-    differences = np.stack([(at(place + d) - at(place - d)) / 2e-4 for d in step], axis=1)
+    differences = np.stack([(at(position + d) - at(position - d)) / 2e-4 for d in step], axis=1)
     assert_allclose(forward, differences, atol=1e-7 * np.abs(differences).max())
-    assert_allclose(jax.jacrev(at)(place), forward, atol=1e-12 * np.abs(differences).max())
+    assert_allclose(jax.jacrev(at)(position), forward, atol=1e-12 * np.abs(differences).max())
 
 
 @pytest.mark.parametrize(
@@ -160,8 +160,8 @@ def test_simulation_on_supports_against_direct_summation(model: jh.Model) -> Non
     exact = jh.simulate(model, times, waves.direct(), method="rk4", step=0.5).position
     size = np.asarray(exact).std(axis=0)[[0, 2, 4]]
     for method, step, tolerance in (("rk4", 0.5, 2e-5), ("ab4", 0.125, 2e-3)):
-        found = jh.simulate(model, times, waves, method=method, step=step).position
-        error = np.abs(np.asarray(found - exact)).max(axis=0)[[0, 2, 4]]
+        positions = jh.simulate(model, times, waves, method=method, step=step).position
+        error = np.abs(np.asarray(positions - exact)).max(axis=0)[[0, 2, 4]]
         assert (error < tolerance * size).all(), (method, error / size)
 
 
@@ -184,13 +184,13 @@ def test_gradients_through_a_sea(model: jh.Model) -> None:
     """reverse = forward = finite difference to 1e-6, by Adams-Bashforth, for a drag and an added-mass coefficient."""
     waves = sea(duration=60.0)
     fast = waves.prepared(model.hull.extremities(), model.cylinders, clock("ab4", 0.0, 0.25, 100))
-    rest = jh.equilibrium(model)
+    equilibrium = jh.equilibrium(model)
     labels = ("column.Cd_t", "pontoon.Ca_z")
     start = jnp.stack([model.values[label] for label in labels])
 
     def loss(x, adjoint):
         changed = model.with_values(dict(zip(labels, x, strict=True)))
-        state = jh.State(rest, jnp.zeros(6), changed.rest().memory)
+        state = jh.State(equilibrium, jnp.zeros(6), changed.rest().memory)
         grid = integrate(changed, fast, state, jnp.zeros(()), jnp.asarray(0.25), 100, "ab4", adjoint)
         return jnp.mean((grid.position[:101] * jnp.array([1.0, 1, 1, 50, 50, 50])) ** 2)
 
@@ -208,9 +208,9 @@ def test_a_platform_that_drifts_gets_a_larger_box(model: jh.Model) -> None:
     """A release 40 m off, beyond the box that is tried first: the same motion as in a sea prepared wide at once."""
     waves = sea(order=1, duration=60.0)
     times = np.arange(0.0, 30.1, 0.5)
-    found = jh.simulate(model, times, waves, position={"surge": 40.0}, method="rk4", step=0.5).position
+    positions = jh.simulate(model, times, waves, position={"surge": 40.0}, method="rk4", step=0.5).position
     exact = jh.simulate(model, times, waves.direct(), position={"surge": 40.0}, method="rk4", step=0.5).position
-    assert_allclose(found, exact, atol=1e-3)
+    assert_allclose(positions, exact, atol=1e-3)
 
 
 @pytest.mark.slow

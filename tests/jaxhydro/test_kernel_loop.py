@@ -53,9 +53,9 @@ def test_a_kernel_gives_what_the_loop_gives(problem):
         return adams_bashforth.forward(driver, y, jnp.zeros(()), jnp.asarray(STEP), jnp.asarray(STEPS), **options)
 
     exact = np.asarray(jax.jit(jax.vmap(one, in_axes=(0, None)))(*problem))
-    found = np.asarray(kernel(True)(*problem))
-    assert found.shape == exact.shape == (2, STEPS + 1, 5)
-    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-12 * np.abs(exact).max())
+    states = np.asarray(kernel(True)(*problem))
+    assert states.shape == exact.shape == (2, STEPS + 1, 5)
+    np.testing.assert_allclose(states, exact, rtol=0, atol=1e-12 * np.abs(exact).max())
     assert np.abs(exact[0] - exact[1]).max() > 1e-3  # each has its own driver
 
 
@@ -83,9 +83,9 @@ def test_arrays_without_elements_are_no_part_of_a_kernel():
     y, start, step = jnp.arange(3.0), jnp.zeros(()), jnp.asarray(STEP)
     options = {"rate": rate, "capacity": 4, "shown": 3}
     march = jax.vmap(lambda driver: kernel_loop.march(driver, y, start, step, interpret=True, **options))
-    found = jax.jit(march)((np.zeros((2, 1)),))
+    states = jax.jit(march)((np.zeros((2, 1)),))
     exact = jax.jit(lambda y: adams_bashforth.forward((), y, start, step, jnp.asarray(4), **options))(y)
-    np.testing.assert_allclose(found[0], exact, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(states[0], exact, rtol=0, atol=1e-14)
 
 
 def test_a_kernel_is_for_one_scheme():
@@ -115,8 +115,8 @@ def test_a_platform_in_seas_moves_in_a_kernel_as_elsewhere():
 
         return jax.jit(jax.vmap(one))
 
-    exact, found = (np.asarray(moved(kernel)(arrays)) for kernel in ("off", "interpreted"))
-    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-12 * np.abs(exact).max())
+    exact, positions = (np.asarray(moved(kernel)(arrays)) for kernel in ("off", "interpreted"))
+    np.testing.assert_allclose(positions, exact, rtol=0, atol=1e-12 * np.abs(exact).max())
     assert np.abs(exact[0] - exact[1]).max() > 1e-3
     text = moved("gpu", "mixed").trace(arrays).lower(lowering_platforms=("cuda",)).as_text()
     assert text.count("__gpu$xla.gpu.triton") == 1

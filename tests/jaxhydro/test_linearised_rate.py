@@ -67,8 +67,8 @@ def test_derivatives_forward_and_in_reverse_agree(scheme: str, driver, start) ->
         return (path[:, :4] * weights).sum()
 
     assert_allclose(jax.jit(forward)(driver, start), jax.jit(backward)(driver, start), rtol=1e-12)
-    found = jax.jit(jax.jacfwd(forward, argnums=(0, 1)))(driver, start)
+    forward_slopes = jax.jit(jax.jacfwd(forward, argnums=(0, 1)))(driver, start)
     expected = jax.jit(jax.grad(backward, argnums=(0, 1)))(driver, start)
-    for one, other in zip(jax.tree.leaves(found), jax.tree.leaves(expected), strict=True):
-        assert_allclose(one, other, rtol=1e-9, atol=1e-12)
-        assert (np.abs(other) > 1e-9).all()
+    for actual, reference in zip(jax.tree.leaves(forward_slopes), jax.tree.leaves(expected), strict=True):
+        assert_allclose(actual, reference, rtol=1e-9, atol=1e-12)
+        assert (np.abs(reference) > 1e-9).all()

@@ -125,8 +125,8 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("key", "said"), MISTAKES)
-def test_mistakes_are_told(key: dict[str, Any], said: str) -> None:
+@pytest.mark.parametrize(("key", "expected"), MISTAKES)
+def test_mistakes_are_told(key: dict[str, Any], expected: str) -> None:
     with pytest.raises(InputError) as error:
         validate(Platform, DATA | {"liquid_column_dampers": [DAMPER | key]}, "damped")
-    assert f"liquid_column_dampers[0].{said}" in str(error.value)
+    assert f"liquid_column_dampers[0].{expected}" in str(error.value)

@@ -215,8 +215,8 @@ def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad
 
 def in_water(model: jh.Model) -> jh.Model:
     """With the effects of the water and the sensors at their neutral value; three drag coefficients get other laws."""
-    column, others = ("column", "t"), (("pontoon", "t"), ("column", "z"))
-    laws = {(column,): SpeedPowerLaw.neutral([column]), others: SlowMotionLaw(law=SpeedPowerLaw.neutral(others))}
+    column, other_keys = ("column", "t"), (("pontoon", "t"), ("column", "z"))
+    laws = {(column,): SpeedPowerLaw.neutral([column]), other_keys: SlowMotionLaw(law=SpeedPowerLaw.neutral(other_keys))}
     taken = {key for keys in laws for key in keys}
     plain = [
         dataclasses.replace(load, Cd={k: v for k, v in load.Cd.items() if k not in taken})
@@ -225,7 +225,7 @@ def in_water(model: jh.Model) -> jh.Model:
         for load in model.loads
     ]
     drag = [MorisonDrag({key: COEFFICIENTS[f"Cd_{key[1]}"] for key in keys}, law) for keys, law in laws.items()]
-    others = (CoveredEnds, Current, CurrentProfile, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
+    water_effects = (CoveredEnds, Current, CurrentProfile, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
     computed = (DriftTransfer(TRANSFER), ComputedExcitation(EXCITATION), ComputedAddedMass(jnp.eye(6)), SlenderBodyForces())
     drift = (
         CoupledDamping({"B15": 0.0}),
@@ -236,7 +236,7 @@ def in_water(model: jh.Model) -> jh.Model:
         *computed,
     )
     pressed = WaveExcitation({(group, kind): 1.0 for group in EVERYTHING["coefficients"] for kind in "tz"})
-    return model_of(model, *plain, *drag, *(kind() for kind in others), *drift, pressed)
+    return model_of(model, *plain, *drag, *(kind() for kind in water_effects), *drift, pressed)
 
 
 @cache
@@ -374,8 +374,8 @@ def test_a_water_effect_at_its_neutral_value(name: str) -> None:
     alone, same = SEA.flow(time, point), effect.through(SEA).flow(time, point)
     assert all(bool((a == b).all()) for a, b in zip(jax.tree.leaves(alone), jax.tree.leaves(same), strict=True))
     assert effect.current(point[2]) is None or bool((effect.current(point[2]) == 0).all())
-    other = effect.at_values({label: 0.2 for label in effect.values})
-    changed, current = other.through(SEA).flow(time, point), other.current(point[2])
+    changed_effect = effect.at_values({label: 0.2 for label in effect.values})
+    changed, current = changed_effect.through(SEA).flow(time, point), changed_effect.current(point[2])
     assert bool((changed.velocity != alone.velocity).any()) or float(jnp.abs(current).max()) == 0.2
 
 
@@ -384,8 +384,8 @@ def test_a_sensor_effect_at_its_neutral_value(name: str) -> None:
     """The reading is the motion, at once; elsewhere it is another, or later."""
     effect, position = SENSOR_EFFECTS[name](), jnp.array([3.0, 1.0, -2.0, 0.1, 0.2, -0.3])
     assert bool((effect.seen(position) == position).all()) and not effect.clock_lag()
-    other = effect.at_values({label: 0.2 for label in effect.values})
-    assert bool((other.seen(position) != position).any()) or float(other.clock_lag()) == 0.2
+    changed_effect = effect.at_values({label: 0.2 for label in effect.values})
+    assert bool((changed_effect.seen(position) != position).any()) or float(changed_effect.clock_lag()) == 0.2
 
 
 @pytest.mark.slow
@@ -422,7 +422,7 @@ def test_gradients_at_rest_are_finite() -> None:
 
     @eqx.filter_jit
     def slopes(y, model):
-        reverse = eqx.filter_grad(lambda both: scalar(*both))((y, model))
+        reverse = eqx.filter_grad(lambda state_and_model: scalar(*state_and_model))((y, model))
         return jax.jacfwd(scalar)(y, model), *reverse
 
     forward, reverse, by_model = slopes(jnp.zeros(12), everything())
@@ -440,8 +440,8 @@ def test_dissipative_loads_take_energy_out(kind: type) -> None:
     rest: high-passed drag, which may give back energy that it remembers, is not passive at every instant."""
     model = only(everything(), kind)
     positions, velocities = sample(2, 64)
-    every = one_program(lambda *args: eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0))(*args))
-    forces, _ = map(np.asarray, every(model, positions, velocities))
+    wrenches = one_program(lambda *args: eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0))(*args))
+    forces, _ = map(np.asarray, wrenches(model, positions, velocities))
     assert (forces * np.asarray(velocities)).sum(axis=1).max() < 0.0
 
 
@@ -834,11 +834,11 @@ def test_springs_at_large_offsets_and_slack() -> None:
 def test_spring_by_axial_stiffness() -> None:
     """EA/l0 (l - l0): the two ways to declare a line agree."""
     unstretched = 242.0 - 1.5e6 / 45e3
-    other = [
+    by_stiffness = [
         {key: line[key] for key in ("anchor", "fairlead")}
         | {"axial_stiffness": 45e3 * unstretched, "unstretched_length": unstretched}
         for line in SPRINGS["lines"]
     ]
     position = jnp.array([5.0, 3.0, 1.0, 0.05, 0.1, -0.2])
-    model = only(build(mooring={"kind": "linear_springs", "lines": other}), MooringLines)
+    model = only(build(mooring={"kind": "linear_springs", "lines": by_stiffness}), MooringLines)
     assert_allclose(at_rest(model, position), at_rest(moored(), position), rtol=1e-5, atol=10.0)

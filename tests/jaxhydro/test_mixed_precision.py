@@ -28,11 +28,11 @@ def test_what_depends_on_the_state_is_in_float32():
     lines = {name: next(line for line in text.splitlines() if f" = {name} " in line) for name in ("cos", "sin")}
     assert "f64[]" in lines["cos"]
     assert "f32[3]" in lines["sin"]
-    found = in_float32(rate)(jnp.asarray(0.3), jnp.asarray(2.0), jnp.ones(3))
-    assert [one.dtype for one in found] == [jnp.float64, jnp.float64]
+    rates = in_float32(rate)(jnp.asarray(0.3), jnp.asarray(2.0), jnp.ones(3))
+    assert [value.dtype for value in rates] == [jnp.float64, jnp.float64]
     exact = np.cos(0.6) * np.sin(1.0)
-    np.testing.assert_allclose(found[0], exact, rtol=2e-7)
-    assert abs(float(found[0][0]) - exact) > 0  # it is rounded
+    np.testing.assert_allclose(rates[0], exact, rtol=2e-7)
+    assert abs(float(rates[0][0]) - exact) > 0  # it is rounded
 
 
 @pytest.mark.slow

@@ -32,20 +32,20 @@ LINES = [MooringLine("low", ("link", "anchor"), 420.0, "chain"), MooringLine("hi
 
 
 def system(points=POINTS, types=TYPES, lines=LINES, depth=DEPTH) -> MooringSystem:
-    return MooringSystem(depth, *({one.name: one for one in every} for every in (points, types, lines)))
+    return MooringSystem(depth, *({named.name: named for named in parts} for parts in (points, types, lines)))
 
 
-def section(found: MooringSystem) -> dict:
-    return catenary_section(found, DEPTH, DENSITY, GRAVITY)
+def section(mooring: MooringSystem) -> dict:
+    return catenary_section(mooring, DEPTH, DENSITY, GRAVITY)
 
 
 def test_parts_between_free_points_are_segments_from_the_anchor() -> None:
-    found = section(system())
-    (line,) = found["lines"]
+    written = section(system())
+    (line,) = written["lines"]
     assert line["anchor"] == [-800.0, 0.0, -200.0] and line["fairlead"] == [-50.0, 0.0, -14.0]
     assert line["segments"] == [{"type": "chain", "length": 420.0}, {"type": "rope", "length": 400.0}]
-    assert found["line_types"]["chain"] == {"axial_stiffness": 3e9, "mass_per_length": 600.0, "diameter": 0.3}
-    assert found["line_types"]["rope"]["submerged_weight"] == pytest.approx(50.0 * GRAVITY)
+    assert written["line_types"]["chain"] == {"axial_stiffness": 3e9, "mass_per_length": 600.0, "diameter": 0.3}
+    assert written["line_types"]["rope"]["submerged_weight"] == pytest.approx(50.0 * GRAVITY)
 
 
 def test_a_seabed_that_is_not_the_waters_is_stated() -> None:

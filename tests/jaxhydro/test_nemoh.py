@@ -46,19 +46,19 @@ def about(case: Path, point: str) -> None:
 @pytest.mark.parametrize("version", VERSIONS)
 def test_the_same_body_by_nemoh_and_by_wamit(version: str) -> None:
     """Coefficients, forces with their phases, and stiffness agree within 3 % of the largest: two meshes and two programs."""
-    mine = read_nemoh_radiation(DATA / f"nemoh-{version}" / RADIATION)
-    theirs = read_wamit(DATA / "wamit" / "ellipsoid.1", DENSITY)
-    assert_allclose(mine.omega, theirs.omega, rtol=1e-5)
-    low = mine.omega < LONG_WAVES
-    for one, other in ((mine.added_mass[low], theirs.added_mass[low]), (mine.damping[low], theirs.damping[low])):
-        size = np.sqrt(np.abs(np.diagonal(other, axis1=1, axis2=2)).max(axis=0))
+    nemoh = read_nemoh_radiation(DATA / f"nemoh-{version}" / RADIATION)
+    wamit = read_wamit(DATA / "wamit" / "ellipsoid.1", DENSITY)
+    assert_allclose(nemoh.omega, wamit.omega, rtol=1e-5)
+    low = nemoh.omega < LONG_WAVES
+    for nemoh_value, wamit_value in ((nemoh.added_mass[low], wamit.added_mass[low]), (nemoh.damping[low], wamit.damping[low])):
+        size = np.sqrt(np.abs(np.diagonal(wamit_value, axis1=1, axis2=2)).max(axis=0))
         unit = np.outer(size, size)
         unit[5, :] = unit[:, 5] = np.inf  # nothing but noise in yaw
-        assert (np.abs(one - other) <= 0.03 * unit).all()
+        assert (np.abs(nemoh_value - wamit_value) <= 0.03 * unit).all()
     force = np.asarray(read_nemoh_excitation(DATA / f"nemoh-{version}" / FORCE).force)
-    other = np.asarray(read_excitation(DATA / "wamit" / "ellipsoid.3", DENSITY, GRAVITY).force)
+    wamit_value = np.asarray(read_excitation(DATA / "wamit" / "ellipsoid.3", DENSITY, GRAVITY).force)
     for i in (0, 2, 4):
-        assert_allclose(force[i], other[i], rtol=0, atol=0.02 * np.abs(other[i]).max())
+        assert_allclose(force[i], wamit_value[i], rtol=0, atol=0.02 * np.abs(wamit_value[i]).max())
     statics = read_nemoh_hydrostatics(DATA / f"nemoh-{version}" / "mesh/KH.dat", density=DENSITY, gravity=GRAVITY)
     stiffness = read_hydrostatics(DATA / "wamit" / "ellipsoid.hst", DENSITY, GRAVITY).stiffness
     assert_allclose(np.diag(statics.stiffness), np.diag(stiffness), rtol=2e-3, atol=1.0)
@@ -106,9 +106,9 @@ def test_another_water_and_unit(case: Path) -> None:
         for row, line in zip(rows, lines)
     ]
     (case / RADIATION).write_text("\n".join(text))
-    again = read_nemoh_radiation(case / RADIATION)
-    assert_allclose(again.omega, before.omega, rtol=1e-6)
-    assert_allclose(again.added_mass, before.added_mass)
+    reread = read_nemoh_radiation(case / RADIATION)
+    assert_allclose(reread.omega, before.omega, rtol=1e-6)
+    assert_allclose(reread.added_mass, before.added_mass)
 
 
 def test_hydrostatics_of_a_version_with_a_fixed_density(case: Path) -> None:
@@ -153,12 +153,12 @@ def test_a_platform_file_names_them(case: Path) -> None:
     assert not remarks
     assert_allclose(load.excitation.force, read_nemoh_excitation(case / FORCE).force)
     assert platform.of_other_waves(0.0) is None
-    other = platform.of_other_waves(30.0)
-    assert other is not None and other.key == "headings of excitation.file"
+    turned = platform.of_other_waves(30.0)
+    assert turned is not None and turned.key == "headings of excitation.file"
 
 
 @pytest.mark.parametrize(
-    ("file", "pattern", "by", "told"),
+    ("file", "pattern", "by", "expected"),
     [
         ("Nemoh.cal", r"^1 0\. 1\.", "1 0. 0.", "degrees of freedom: expected surge, sway, heave, roll, pitch, yaw"),
         ("Nemoh.cal", r"^2 0\. 1\. 0\. 0\. 0\. 0\.000000(\s+! Pitch)", r"2 0. 1. 0. 0. 0. 1.\1", "about one point"),
@@ -169,11 +169,11 @@ def test_a_platform_file_names_them(case: Path) -> None:
         (RADIATION, r"^  0\.9000000E\+00.*$", "  0.5", "rows of 13 finite numbers"),
     ],
 )
-def test_what_is_wrong_is_told(case: Path, file: str, pattern: str, by: str, told: str) -> None:
+def test_what_is_wrong_is_told(case: Path, file: str, pattern: str, by: str, expected: str) -> None:
     edit(case / file, pattern, by)
     with pytest.raises(InputError) as error:
         read_nemoh_radiation(case / RADIATION)
-    assert told in str(error.value) and Path(file).name in str(error.value)
+    assert expected in str(error.value) and Path(file).name in str(error.value)
 
 
 def test_what_is_missing_is_told(case: Path) -> None:

@@ -65,11 +65,11 @@ def test_an_irregular_sea(tmp_path: Path, order: int) -> None:
         lambda omega: jonswap(omega, 3.0, 11.0, 2.0), 600.0, model.environment, low=0.05, cutoff=0.2, seed=2
     )
     times = np.arange(0.0, 600.0, 0.5)
-    found = np.asarray(jh.simulate(model, times, jh.IrregularSea(waves, model.environment, order)).position)
+    position = np.asarray(jh.simulate(model, times, jh.IrregularSea(waves, model.environment, order)).position)
     late, omega = times > 500, np.asarray(waves.omega)
     turn = np.exp(1j * np.outer(times[late], omega)) * np.asarray(waves.complex_amplitude())
     heave = (turn @ response_to(omega)["heave"]).real
-    assert_allclose(found[late, 2] - found[late, 2].mean(), heave - heave.mean(), atol=0.03 * heave.std())
+    assert_allclose(position[late, 2] - position[late, 2].mean(), heave - heave.mean(), atol=0.03 * heave.std())
 
 
 @pytest.mark.slow
@@ -79,8 +79,8 @@ def test_a_sea_without_any_force_of_waves(tmp_path: Path) -> None:
     waves = spectrum_components(
         lambda omega: jonswap(omega, 3.0, 11.0, 2.0), 100.0, model.environment, low=0.05, cutoff=0.2, seed=2
     )
-    found = jh.simulate(model, np.arange(0.0, 60.0, 0.5), jh.IrregularSea(waves, model.environment, 1)).position
-    assert float(jnp.abs(found).max()) < 0.02
+    position = jh.simulate(model, np.arange(0.0, 60.0, 0.5), jh.IrregularSea(waves, model.environment, 1)).position
+    assert float(jnp.abs(position).max()) < 0.02
 
 
 def test_a_sweep_can_be_set_up(tmp_path: Path) -> None:

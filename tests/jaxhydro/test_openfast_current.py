@@ -23,7 +23,7 @@ def converted(folder: Path, *values: object):
     rows = [f"{value}   {key}   - of the test" for key, value in zip(("WaveDir", *KEYS), (25, *values))]
     path.write_text("\n".join(["--- SeaState ---", "Made for a test", *rows]) + "\n")
     current, items = read_current(read_keyed_file(path, "a file"), DEPTH)
-    return current, [(one.treatment, one.meaning) for one in items]
+    return current, [(item.treatment, item.meaning) for item in items]
 
 
 def openfast(z, ss, ss_dir, ref, ns, ns_dir, di, di_dir):
@@ -46,15 +46,15 @@ def openfast(z, ss, ss_dir, ref, ns, ns_dir, di, di_dir):
 )
 def test_the_profile_is_openfast_s(tmp_path, values, treatment, within) -> None:
     """At all depths within what is said; the power law is steep at the bed alone, so most of the depth is closer."""
-    current, ((found, meaning),) = converted(tmp_path, *values)
-    assert found is treatment
+    current, ((actual, meaning),) = converted(tmp_path, *values)
+    assert actual is treatment
     heights, velocity = validate(SteadyCurrent, current, "current").profile(DEPTH)
     z = np.linspace(-DEPTH, 0.0, 2001)
     off = np.abs([np.interp(z, heights, row) for row in velocity] - openfast(z, *values[1:]))
     assert off[:, z > -0.95 * DEPTH].max() < within
     if treatment is Treatment.APPROXIMATED:
-        said = float(meaning.partition("within ")[2].partition(" m/s")[0])
-        assert np.hypot(*off).max() <= 1.06 * said < 0.2
+        bound = float(meaning.partition("within ")[2].partition(" m/s")[0])
+        assert np.hypot(*off).max() <= 1.06 * bound < 0.2
 
 
 def test_default_and_what_is_left_out(tmp_path) -> None:
@@ -86,7 +86,7 @@ def test_a_deck_s_platform_has_the_current(tmp_path) -> None:
     text = (folder / "seastate.dat").read_text()
     row = next(line for line in text.splitlines() if "CurrMod" in line)
     (folder / "seastate.dat").write_text(text.replace(row, f'{row}\n 0.7   CurrSSV0   - m/s\n "DEFAULT"   CurrSSDir   - deg'))
-    found = read_openfast_deck(folder / "main.fst")
-    assert found.platform["water"]["current"] == {"speed": 0.7, "heading": 30.0, "exponent": 1 / 7}
-    (item,) = [one for one in found.items if "CurrMod" in one.source]
+    deck = read_openfast_deck(folder / "main.fst")
+    assert deck.platform["water"]["current"] == {"speed": 0.7, "heading": 30.0, "exponent": 1 / 7}
+    (item,) = [entry for entry in deck.items if "CurrMod" in entry.source]
     assert item.treatment is Treatment.TAKEN and "`water.current`" in item.meaning

@@ -24,10 +24,10 @@ Edited = Callable[..., Conversion]
 def edited(tmp_path: Path) -> Edited:
     """The deck with words of one of its files replaced."""
 
-    def read(file: str = "", old: str = "", new: str = "", *more: str) -> Conversion:
+    def read(file: str = "", old: str = "", new: str = "", *further: str) -> Conversion:
         folder = tmp_path / f"deck{len(list(tmp_path.iterdir()))}"
         shutil.copytree(DECK, folder)
-        changes = [(file, old, new), *zip(more[::3], more[1::3], more[2::3])] if file else []
+        changes = [(file, old, new), *zip(further[::3], further[1::3], further[2::3])] if file else []
         for name, before, after in changes:
             text = (folder / name).read_text(encoding="utf-8")
             assert before in text
@@ -38,11 +38,11 @@ def edited(tmp_path: Path) -> Edited:
 
 
 def part(conversion: Conversion, name: str) -> dict:
-    return next(one for one in conversion.platform["rigid_body"]["parts"] if one["name"] == name)
+    return next(entry for entry in conversion.platform["rigid_body"]["parts"] if entry["name"] == name)
 
 
 def member(conversion: Conversion, name: str) -> dict:
-    return next(one for one in conversion.platform["members"] if one["name"] == name)
+    return next(entry for entry in conversion.platform["members"] if entry["name"] == name)
 
 
 def group_of(conversion: Conversion, name: str) -> dict:
@@ -95,7 +95,7 @@ def test_a_missing_blade_is_said(edited: Edited) -> None:
     deck = edited("elastodyn.dat", '"blade.dat"   BldFile2', '"gone.dat"   BldFile2')
     assert "gone.dat" in said(deck, "BldFile2", Treatment.LEFT_OUT)
     assert [item.source for item in deck.items if item.warning] == ["elastodyn.dat: BldFile2", "main.fst: AddF0"]
-    assert "blade 2" not in [one["name"] for one in deck.platform["rigid_body"]["parts"]]
+    assert "blade 2" not in [entry["name"] for entry in deck.platform["rigid_body"]["parts"]]
 
 
 def test_heights_count_from_still_water(edited: Edited) -> None:
@@ -165,7 +165,7 @@ def test_spin_is_that_of_the_lower_end(edited: Edited) -> None:
 def test_diffraction_by_keyword(edited: Edited) -> None:
     deck = edited()
     assert deck.platform["diffraction"] == "maccamy_fuchs"
-    assert [one["name"] for one in deck.platform["members"] if one["maccamy_fuchs"]] == ["member11"]
+    assert [entry["name"] for entry in deck.platform["members"] if entry["maccamy_fuchs"]] == ["member11"]
     plain = edited("hydrodyn.dat", "MCF MCF MCF MCF", "1.0 1.0 1.0 1.0")
     assert plain.platform["diffraction"] == "none" and "maccamy_fuchs" not in plain.platform["members"][0]
 
@@ -279,14 +279,14 @@ def test_versions_without_a_key(edited: Edited) -> None:
     assert "PtfmRefzt (0)" in said(deck, "elastodyn.dat: keys of other versions", Treatment.APPROXIMATED)
     moved = edited("elastodyn.dat", "0   PtfmRefzt", "-5   PtfmRefzt")
     assert "tracked_point: [0, 0, -5]" in said(moved, "PtfmRefxt", Treatment.APPROXIMATED)
-    more = edited("hydrodyn.dat", "1   AMMod", "7 NewKey\n1   AMMod")
-    assert "NewKey" in said(more, "hydrodyn.dat: other keys", Treatment.LEFT_OUT)
+    with_new_key = edited("hydrodyn.dat", "1   AMMod", "7 NewKey\n1   AMMod")
+    assert "NewKey" in said(with_new_key, "hydrodyn.dat: other keys", Treatment.LEFT_OUT)
 
 
 def test_restoring_of_ballast_in_old_decks(edited: Edited) -> None:
     """Without NBody, the weight of ballast does not move with the platform: AddCLin holds its restoring."""
     parts = [part(edited(), name) for name in ("ballast 1", "ballast 2")]
-    restoring = -9.81 * sum(one["mass"] * one["centre_of_mass"][2] for one in parts)
+    restoring = -9.81 * sum(ballast["mass"] * ballast["centre_of_mass"][2] for ballast in parts)
     diagonal = (" 0  0  0  0  0  0\n" * 2, f" 0 0 0 {2 * restoring:.9g} 0 0\n 0 0 0 0 {restoring:.9g} 0\n")
     old = ("hydrodyn.dat", " 0  0  0  0  0  0\n" + diagonal[0], " 0  0  0  0  0  0\n" + diagonal[1])
     whole = edited(*old).platform["stiffness"]

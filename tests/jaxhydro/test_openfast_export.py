@@ -89,8 +89,8 @@ def cut(members: list[Member]) -> dict[tuple[float, ...], tuple[Member, float]]:
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_mass_damping_mooring_and_water_come_back(trips: dict[str, RoundTrip], name: str) -> None:
     before, after = trips[name].before, trips[name].after
-    for mine, read in zip(before.rigid_body.combined(), after.rigid_body.combined(), strict=True):
-        assert np.abs(np.asarray(read) - mine).max() <= SAME * np.abs(mine).max()
+    for written, read in zip(before.rigid_body.combined(), after.rigid_body.combined(), strict=True):
+        assert np.abs(np.asarray(read) - written).max() <= SAME * np.abs(written).max()
     assert after.linear_damping.matrix() == pytest.approx(before.linear_damping.matrix(), rel=SAME)
     assert after.water == before.water
     assert isinstance(before.mooring, StiffnessMatrix) and isinstance(after.mooring, StiffnessMatrix)
@@ -101,12 +101,12 @@ def test_mass_damping_mooring_and_water_come_back(trips: dict[str, RoundTrip], n
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_members_and_coefficients_come_back(trips: dict[str, RoundTrip], name: str) -> None:
     before, after = trips[name].before, trips[name].after
-    mine, read = cut(members_of(before)), cut(members_of(after))
-    assert mine.keys() == read.keys() and len(mine) > 0
-    for ends, (member, size) in mine.items():
-        other, its = read[ends]
-        assert its == pytest.approx(size, rel=SAME) and other.circular is member.circular
-        own, returned = coefficients(before, member), coefficients(after, other)
+    written, read = cut(members_of(before)), cut(members_of(after))
+    assert written.keys() == read.keys() and len(written) > 0
+    for ends, (member, size) in written.items():
+        returned_member, its = read[ends]
+        assert its == pytest.approx(size, rel=SAME) and returned_member.circular is member.circular
+        own, returned = coefficients(before, member), coefficients(after, returned_member)
         for key in ("Ca_t", "Cd_t") if member.column else ("Ca_t", "Ca_z", "Cd_t", "Cd_z"):
             assert returned[key] == pytest.approx(own[key], rel=SAME), (ends, key)
 
@@ -155,10 +155,10 @@ def upright_buoyancy(model: Model) -> tuple[np.ndarray, np.ndarray]:
 def test_declared_hydrostatics_come_back(trips: dict[str, RoundTrip]) -> None:
     """Force and restoring at rest; what is read back is linear, and the members displace nothing."""
     trip = trips["volturnus-s"]
-    mine, read = (upright_buoyancy(build(p)) for p in (trip.before, trip.after))
+    written, read = (upright_buoyancy(build(p)) for p in (trip.before, trip.after))
     assert trip.after.hydrostatics.linear and not trip.before.hydrostatics.linear
-    assert read[0][2] == pytest.approx(mine[0][2], rel=SAME)
-    assert np.diag(read[1])[2:5] == pytest.approx(np.diag(mine[1])[2:5], rel=1e-6)
+    assert read[0][2] == pytest.approx(written[0][2], rel=SAME)
+    assert np.diag(read[1])[2:5] == pytest.approx(np.diag(written[1])[2:5], rel=1e-6)
     assert "PtfmVol0" in said(trip.deck, "hydrostatics", Treatment.APPROXIMATED)
     assert not trips["oc3-hywind"].after.hydrostatics.file
 
@@ -216,15 +216,15 @@ def test_catenaries_come_back(tmp_path: Path) -> None:
     """Lines of two segments, copied to headings, over a seabed of their own depth."""
     before = with_catenaries()
     trip = round_trip(before, tmp_path / "deck")
-    mine, read = before.mooring, trip.after.mooring
-    assert isinstance(mine, Catenary) and isinstance(read, Catenary)
+    written, read = before.mooring, trip.after.mooring
+    assert isinstance(written, Catenary) and isinstance(read, Catenary)
     assert read.seabed.depth == 180.0
     water = before.water
-    for name, kind in mine.line_types.items():
+    for name, kind in written.line_types.items():
         weight = kind.weight(water.density, water.gravity)
         assert read.line_types[name].weight(water.density, water.gravity) == pytest.approx(weight, rel=SAME)
         assert read.line_types[name].axial_stiffness == pytest.approx(kind.axial_stiffness, rel=SAME)
-    ends = [np.concatenate(copy) for line in mine.lines for copy in line.copies()]
+    ends = [np.concatenate(copy) for line in written.lines for copy in line.copies()]
     returned = [np.array([*line.anchor, *line.fairlead]) for line in read.lines]
     assert np.array(returned) == pytest.approx(np.array(ends), rel=SAME, abs=1e-8)
     assert all([s.length for s in line.segments] == [600.0, 240.0] for line in read.lines)

@@ -17,10 +17,10 @@ def test_channels_come_back_to_their_resolution(tmp_path: Path) -> None:
     values = np.stack([np.full_like(time, 3.7), 1e4 + 1e-3 * wave, 1e-9 * wave, -5.0 + 12 * wave, 0 * wave], axis=1)
     names = ["Still", "Far", "Tiny", "Usual", "Zero"]
     write_outb(tmp_path / "a.outb", 100.0, 0.25, names, ["m"] * 5, values, "Größe")
-    found = read_table(tmp_path / "a.outb")
-    assert list(found.columns) == ["Time", *names] and found.attrs["stated"]["Far"] == "m"
-    np.testing.assert_allclose(found["Time"], time, atol=1e-9)
-    error = np.abs(found[names].to_numpy() - values).max(axis=0)
+    table = read_table(tmp_path / "a.outb")
+    assert list(table.columns) == ["Time", *names] and table.attrs["stated"]["Far"] == "m"
+    np.testing.assert_allclose(table["Time"], time, atol=1e-9)
+    error = np.abs(table[names].to_numpy() - values).max(axis=0)
     resolution = np.maximum(np.ptp(values, axis=0) / 65535, np.abs(values).max(axis=0) * 2.0**-22)
     assert (error <= 0.51 * resolution).all()
     assert error[3] > 0.3 * 24 / 65535  # not finer than integers can be

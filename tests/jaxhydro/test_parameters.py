@@ -75,7 +75,9 @@ def test_a_model_takes_a_member_of_any_family_and_nothing_else() -> None:
     model = jh.load_model("volturnus-s")
     for effect, name in ((Umbilical(), "loads"), (Current(), "water"), (SensorLag(), "sensors")):
         changed = model.with_effect(effect)
-        assert [len(getattr(changed, one)) - len(getattr(model, one)) for one in FAMILIES] == [one == name for one in FAMILIES]
+        assert [len(getattr(changed, family)) - len(getattr(model, family)) for family in FAMILIES] == [
+            family == name for family in FAMILIES
+        ]
         assert set(changed.values) == {*model.values, *effect.values}
     with pytest.raises(TypeError, match="expected a load, a water effect or a sensor effect, found LooseBolt"):
         model.with_effect(BOLT)

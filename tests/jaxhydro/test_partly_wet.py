@@ -105,33 +105,33 @@ STANDING = {"shape": "rect", "d": [60.0, 12.0], "rA": [0, 0, -3.0], "rB": [0, 0,
 def test_statics_of_a_lying_box(member: dict) -> None:
     """Volume, centre, C33, C44 and C55 of 60 x 12 m at a draught of 3 m, and the force at finite angles of the upright box."""
     load, upright = load_of(alone(**member)), load_of(alone(**STANDING))
-    found, weight = load.upright(RHO * G), RHO * G
+    statics, weight = load.upright(RHO * G), RHO * G
     volume = 60 * 12 * 3
-    assert found["displaced_volume"] == pytest.approx(volume, rel=1e-12)
-    assert found["centre_of_buoyancy"] == pytest.approx(-1.5, rel=1e-12)
-    assert found["C33"] == pytest.approx(weight * 720, rel=1e-12)
-    assert found["C44"] == pytest.approx(weight * (60 * 12**3 / 12 - volume * 1.5), rel=1e-9)
-    assert found["C55"] == pytest.approx(weight * (12 * 60**3 / 12 - volume * 1.5), rel=1e-9)
+    assert statics["displaced_volume"] == pytest.approx(volume, rel=1e-12)
+    assert statics["centre_of_buoyancy"] == pytest.approx(-1.5, rel=1e-12)
+    assert statics["C33"] == pytest.approx(weight * 720, rel=1e-12)
+    assert statics["C44"] == pytest.approx(weight * (60 * 12**3 / 12 - volume * 1.5), rel=1e-9)
+    assert statics["C55"] == pytest.approx(weight * (12 * 60**3 / 12 - volume * 1.5), rel=1e-9)
     for position in ([0, 0, 0.4, 0.1, 0.02, 0.3], [0, 0, -0.5, -0.08, -0.03, 0.0]):
-        one, other = (np.asarray(force_on(part, np.array(position), weight)) for part in (load, upright))
-        assert_allclose(one, other, atol=1e-9 * np.abs(other).max())
+        lying_force, upright_force = (np.asarray(force_on(part, np.array(position), weight)) for part in (load, upright))
+        assert_allclose(lying_force, upright_force, atol=1e-9 * np.abs(upright_force).max())
 
 
 @pytest.mark.parametrize("height", [-0.9, 0.0, 0.75])
 def test_statics_of_a_lying_cylinder(height: float) -> None:
     """The segment of a circle, 3 m wide and 40 m long, its axis at a height over still water."""
-    found = load_of(alone(**TUBE, rA=[-20, 0, height], rB=[20, 0, height])).upright(RHO * G)
+    statics = load_of(alone(**TUBE, rA=[-20, 0, height], rB=[20, 0, height])).upright(RHO * G)
     y = np.linspace(-1.5, 1.5, 400001)
     half = np.sqrt(1.5**2 - y**2)
     wet = np.clip(-height + half, 0, 2 * half)
     area, step = wet.sum() * (y[1] - y[0]), y[1] - y[0]
     middle = ((height - half + 0.5 * wet) * wet).sum() * step / area
     wide = 2 * math.sqrt(1.5**2 - height**2)
-    assert found["displaced_volume"] == pytest.approx(40 * area, rel=1e-7)
-    assert found["centre_of_buoyancy"] == pytest.approx(middle, rel=1e-6)
-    assert found["C33"] == pytest.approx(RHO * G * 40 * wide, rel=1e-9)
-    assert found["C44"] == pytest.approx(RHO * G * 40 * (wide**3 / 12 + area * middle), rel=1e-6, abs=1e-6 * RHO * G * 40)
-    assert found["C55"] == pytest.approx(RHO * G * (wide * 40**3 / 12 + 40 * area * middle), rel=1e-6)
+    assert statics["displaced_volume"] == pytest.approx(40 * area, rel=1e-7)
+    assert statics["centre_of_buoyancy"] == pytest.approx(middle, rel=1e-6)
+    assert statics["C33"] == pytest.approx(RHO * G * 40 * wide, rel=1e-9)
+    assert statics["C44"] == pytest.approx(RHO * G * 40 * (wide**3 / 12 + area * middle), rel=1e-6, abs=1e-6 * RHO * G * 40)
+    assert statics["C55"] == pytest.approx(RHO * G * (wide * 40**3 / 12 + 40 * area * middle), rel=1e-6)
 
 
 @eqx.filter_jit
@@ -147,10 +147,10 @@ def wet_surface(sea, time: float) -> np.ndarray:
     faces = [(np.meshgrid(x, y, [-3.0]), [0, 0, -1.0], 1.0 * 0.5)]
     faces += [(np.meshgrid(x, [side], z), [0, np.sign(side), 0], 1.0 * 0.25) for side in (-6.0, 6.0)]
     faces += [(np.meshgrid([end], y, z), [np.sign(end), 0, 0], 0.5 * 0.25) for end in (-30.0, 30.0)]
-    every = [np.stack([part.reshape(-1) for part in grid]) for grid, _, _ in faces]
-    whole = RHO * np.asarray(flow(sea, time, np.concatenate(every, axis=1)).pressure)
-    pressures = np.split(whole, np.cumsum([points.shape[1] for points in every])[:-1])
-    for points, pressure, (_, normal, area) in zip(every, pressures, faces, strict=True):
+    panels = [np.stack([part.reshape(-1) for part in grid]) for grid, _, _ in faces]
+    whole = RHO * np.asarray(flow(sea, time, np.concatenate(panels, axis=1)).pressure)
+    pressures = np.split(whole, np.cumsum([points.shape[1] for points in panels])[:-1])
+    for points, pressure, (_, normal, area) in zip(panels, pressures, faces, strict=True):
         force = -pressure[:, None] * np.array(normal) * area
         total += np.concatenate([force.sum(axis=0), np.cross(points.T, force).sum(axis=0)])
     return total
@@ -162,12 +162,12 @@ def test_pressure_of_long_waves_on_a_lying_box(heading: float) -> None:
     model, period = alone(**LYING), 16.0
     sea = jh.regular_wave(2e-3, period, model.environment, heading=math.radians(heading))
     at = [0.0, 4.0]
-    found, expected = ([one(sea, t) for t in at] for one in (lambda s, t: force_in(model, s, t), wet_surface))
+    forces, expected = ([force_of(sea, t) for t in at] for force_of in (lambda s, t: force_in(model, s, t), wet_surface))
     for part, close in (([0, 1], 0.02), ([2], 0.02), ([3], 0.05), ([4], 0.03)):
         largest = np.abs(np.array(expected)[:, part]).max()
         if (part == [3] and heading == 0) or (part == [4] and heading == 90):
             largest = np.abs(expected).max()
-        assert_allclose(np.array(found)[:, part], np.array(expected)[:, part], atol=close * largest)
+        assert_allclose(np.array(forces)[:, part], np.array(expected)[:, part], atol=close * largest)
 
 
 def force_in(model: Model, sea, time: float) -> np.ndarray:
@@ -189,10 +189,10 @@ def test_statics_of_an_inclined_brace() -> None:
     length, d = 24.0, 2.0
     ends = [[-length / 2 * math.cos(math.pi / 6), 0, -6.0], [length / 2 * math.cos(math.pi / 6), 0, 6.0]]
     for a, b in (ends, ends[::-1]):
-        found = load_of(alone(shape="circ", d=d, rA=a, rB=b)).upright(RHO * G)
+        statics = load_of(alone(shape="circ", d=d, rA=a, rB=b)).upright(RHO * G)
         area = math.pi / 4 * d**2
-        assert found["displaced_volume"] == pytest.approx(area * length / 2, rel=1e-9)
-        assert found["C33"] == pytest.approx(RHO * G * area / math.sin(math.pi / 6), rel=1e-6)
+        assert statics["displaced_volume"] == pytest.approx(area * length / 2, rel=1e-9)
+        assert statics["C33"] == pytest.approx(RHO * G * area / math.sin(math.pi / 6), rel=1e-6)
 
 
 def wet_cylinder(sea, time: float, a: np.ndarray, b: np.ndarray, diameter: float) -> np.ndarray:
@@ -227,6 +227,6 @@ def test_waves_on_a_leaning_cylinder_that_still_water_cuts(slope: float) -> None
     model = alone(shape="circ", d=2.0, rA=a.tolist(), rB=b.tolist(), maccamy_fuchs=False)
     sea = jh.regular_wave(2e-3, 10.0, model.environment, heading=0.5)
     for time in (0.0, 2.5):
-        found, expected = force_in(model, sea, time), wet_cylinder(sea, time, a, b, 2.0)
+        acting_force, expected = force_in(model, sea, time), wet_cylinder(sea, time, a, b, 2.0)
         for part in (slice(0, 3), slice(3, 6)):
-            assert_allclose(found[part], expected[part], atol=0.02 * np.linalg.norm(expected[part]))
+            assert_allclose(acting_force[part], expected[part], atol=0.02 * np.linalg.norm(expected[part]))

@@ -166,9 +166,9 @@ def test_numbers_are_read_however_they_are_written(tmp_path: Path) -> None:
 def test_parts_are_put_together() -> None:
     part = {"name": "a", "mass": 3.0, "centre_of_mass": [0, 0, 1]}
     own = {"Ixx": 1, "Iyy": 2, "Izz": 2, "Iyz": 0.5}
-    other = {"name": "b", "mass": 1.0, "centre_of_mass": [0, 4, 1], "inertia": own}
-    third = {**other, "centre_of_mass": [0, 4, 5]}
-    mass, centre, inertia = RigidBody.model_validate({"parts": [part, other, third]}).combined()
+    second = {"name": "b", "mass": 1.0, "centre_of_mass": [0, 4, 1], "inertia": own}
+    third = {**second, "centre_of_mass": [0, 4, 5]}
+    mass, centre, inertia = RigidBody.model_validate({"parts": [part, second, third]}).combined()
     assert mass == 5.0
     np.testing.assert_allclose(centre, [0.0, 1.6, 1.8])
     points = np.array([[0, 0, 1], [0, 4, 1], [0, 4, 5]]) - centre

@@ -102,7 +102,7 @@ ANY = st.recursive(
 def places(data: Any) -> list[tuple[Any, Any]]:
     """Every container and key in a document."""
     items = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
-    return [place for key, value in items for place in ((data, key), *places(value))]
+    return [pair for key, value in items for pair in ((data, key), *places(value))]
 
 
 def delete(data: Any, key: Any, _: Any) -> None:

@@ -26,8 +26,8 @@ def test_threads_share_one_compilation() -> None:
 
     with ThreadPoolExecutor(4) as pool:
         jobs = [pool.submit(raised, Scaled(jnp.asarray(2.0), power), jnp.arange(3.0)) for power in (2, 3) * 3]
-        found = [np.asarray(job.result()) for job in jobs]
-    for power, values in zip((2, 3) * 3, found, strict=True):
+        results = [np.asarray(job.result()) for job in jobs]
+    for power, values in zip((2, 3) * 3, results, strict=True):
         np.testing.assert_allclose(values, 2 * np.arange(3.0) ** power)
     assert sorted(traced) == [2, 3]
     raised(Scaled(jnp.asarray(2.0), 2), jnp.arange(4.0))  # of another shape

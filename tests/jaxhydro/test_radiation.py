@@ -274,10 +274,10 @@ def test_wamit_files_are_made_dimensional(tmp_path: Path) -> None:
     given = coefficients(np.array([0.2, 0.5, 1.0, 2.0, 3.0]))
     given = given._replace(zero=1.2 * given.infinite)
     (file := tmp_path / "a.1").write_text(wamit_text(given, 12.5, 1010.0))
-    for read, other in zip(read_wamit(file, 1010.0, 12.5), given):
-        assert_allclose(read, other, rtol=1e-7, atol=1e-3)
-    kept = [line for line in wamit_text(given, 1, 1).splitlines()[1:] if line[0] != "0"]
-    (file := tmp_path / "b.1").write_text("\n".join(kept))
+    for read, expected in zip(read_wamit(file, 1010.0, 12.5), given):
+        assert_allclose(read, expected, rtol=1e-7, atol=1e-3)
+    finite = [line for line in wamit_text(given, 1, 1).splitlines()[1:] if line[0] != "0"]
+    (file := tmp_path / "b.1").write_text("\n".join(finite))
     assert read_wamit(file, 1.0).infinite is None
 
 
@@ -327,8 +327,8 @@ def test_capytaine_datasets(tmp_path: Path) -> None:
     made.expand_dims("water_depth").to_netcdf(file)
     actual = read_capytaine(file)
     pick = np.ix_([0, 2, 4], [0, 2, 4])
-    for read, other in zip(actual[1:], given[1:]):
-        assert_allclose(read[(..., *pick)], other[(..., *pick)], rtol=1e-12)
+    for read, expected in zip(actual[1:], given[1:]):
+        assert_allclose(read[(..., *pick)], expected[(..., *pick)], rtol=1e-12)
     assert_allclose(actual.omega, given.omega)
     assert not actual.added_mass[:, 1].any() and not actual.added_mass[:, :, 3].any()
     made.drop_sel(omega=[0.0, np.inf]).to_netcdf(file)
@@ -391,7 +391,7 @@ def test_a_platform_file_names_its_coefficients(tmp_path: Path) -> None:
     assert [float(model.values["computed_radiation.share"]) for model in models] == [1.0, 1.0, 0.0]
     assert loads[2].rates.shape[0] <= 6 < loads[0].rates.shape[0]
     omega = np.array([0.1, 0.5, 1.0])
-    first, second = (Realisation(*map(np.asarray, (one.rates, one.drive, one.output)), 0.0, 0.0) for one in loads[:2])
+    first, second = (Realisation(*map(np.asarray, (load.rates, load.drive, load.output)), 0.0, 0.0) for load in loads[:2])
     peak = np.abs(first.transfer(omega)).max(axis=0)
     assert_allclose(second.transfer(omega), first.transfer(omega), atol=1e-5 * peak.max(), rtol=1e-3)
     assert_allclose(first.transfer(omega)[:, 2, 2], transfer(omega) * SHAPE[2, 2], atol=0.03 * SHAPE[2, 2])
@@ -464,5 +464,5 @@ def test_sweeps_find_the_coefficients_from_their_own_folder(tmp_path: Path) -> N
     """The platform that a store keeps names the file where it is."""
     (elsewhere := tmp_path / "store").mkdir()
     (elsewhere / "platform.yaml").write_text(_platform_text(str(folder(tmp_path))))
-    kept, asked = (load_platform(path / "platform.yaml").radiation for path in (elsewhere, tmp_path))
-    assert kept == asked and Path(kept.file).is_file()
+    stored, declared = (load_platform(path / "platform.yaml").radiation for path in (elsewhere, tmp_path))
+    assert stored == declared and Path(stored.file).is_file()

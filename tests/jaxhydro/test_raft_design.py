@@ -225,13 +225,13 @@ def test_treatment_of_what_the_platform_file_does_not_have(tmp_path: Path) -> No
         data["platform"]["members"][1] |= {"CaEnd": 0.4, "type": "beam", "E": 2e11, "G": 8e10}
 
     conversion = converted(tmp_path, change)
-    said = {item.source.removeprefix("design.yaml: "): (item.treatment, item.meaning) for item in conversion.items}
-    assert said["platform.members[0].potMod"][0] is Treatment.APPROXIMATED
-    assert said["platform.members[1].type"][0] is Treatment.APPROXIMATED
+    treatments = {item.source.removeprefix("design.yaml: "): (item.treatment, item.meaning) for item in conversion.items}
+    assert treatments["platform.members[0].potMod"][0] is Treatment.APPROXIMATED
+    assert treatments["platform.members[1].type"][0] is Treatment.APPROXIMATED
     for key in ("platform.members[0].Cd_q", "platform.members[0].colour", "platform.members[1].CaEnd", "platform.hydroPath"):
-        assert said[key][0] is Treatment.LEFT_OUT, key
-    assert said["platform.additional_effects[1]"][0] is Treatment.LEFT_OUT
-    assert said["turbine: Fthrust"][0] is Treatment.LEFT_OUT and said["settings"][0] is Treatment.LEFT_OUT
+        assert treatments[key][0] is Treatment.LEFT_OUT, key
+    assert treatments["platform.additional_effects[1]"][0] is Treatment.LEFT_OUT
+    assert treatments["turbine: Fthrust"][0] is Treatment.LEFT_OUT and treatments["settings"][0] is Treatment.LEFT_OUT
     assert conversion.platform["coefficients"]["column"]["Cd_t"] == 0.75  # RAFT's first two numbers are the two directions
     assert any("first two of 4 numbers" in item.meaning for item in conversion.items)
     assert "maccamy_fuchs" not in conversion.platform["members"][0]
@@ -261,9 +261,9 @@ def test_mooring_section_is_read() -> None:
 
 def test_lines_weigh_the_same_in_water_of_another_density() -> None:
     """RAFT gives the section's density to MoorPy; the platform file has the site's."""
-    kept, other = moorings(), moorings(lambda s: s.update(rho=1000.0))
-    weight = other.line_types["chain"].weight_in_water(1025.0, 9.81)
-    assert weight == pytest.approx(kept.line_types["chain"].weight_in_water(1000.0, 9.81), rel=1e-12)
+    same_water, fresh_water = moorings(), moorings(lambda s: s.update(rho=1000.0))
+    weight = fresh_water.line_types["chain"].weight_in_water(1025.0, 9.81)
+    assert weight == pytest.approx(same_water.line_types["chain"].weight_in_water(1000.0, 9.81), rel=1e-12)
 
 
 OC3_POINTS = [(853.87, 0.0), (-426.935, 739.47311), (-426.935, -739.47311)], [(5.2, 0.0), (-2.6, 4.5033), (-2.6, -4.5033)]
@@ -405,16 +405,16 @@ def put(path: tuple[Any, ...], value: Any) -> Callable[[dict[str, Any]], None]:
     ],
 )
 def test_mistakes_are_told_with_key_expected_and_found(tmp_path: Path, path: tuple[Any, ...], value: Any, message: str) -> None:
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as error:
         converted(tmp_path, put(path, value))
-    assert len(told.value.problems) == 1, str(told.value)
-    assert told.value.source.endswith("design.yaml") and message in str(told.value)
+    assert len(error.value.problems) == 1, str(error.value)
+    assert error.value.source.endswith("design.yaml") and message in str(error.value)
 
 
 def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as error:
         converted(tmp_path, lambda d: (put((*MEMBER, "t"), -1.0)(d), put(("site", "g"), "9.81")(d)))
-    assert {problem.where for problem in told.value.problems} == {"platform.members[0].t", "site.g"}
+    assert {problem.where for problem in error.value.problems} == {"platform.members[0].t", "site.g"}
 
 
 def test_a_farm_and_a_body_without_mass_are_refused(tmp_path: Path) -> None:

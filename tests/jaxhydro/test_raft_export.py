@@ -76,34 +76,34 @@ def by_ends(members: list[Member]) -> list[tuple[np.ndarray, np.ndarray, np.ndar
 @pytest.mark.parametrize("name", ["volturnus-s", "oc4-deepcwind", pytest.param("catenary", marks=pytest.mark.slow)])
 def test_mass_members_and_coefficients_come_back(name: str, tmp_path: Path) -> None:
     before, after = declared(name), read_back(name, tmp_path)
-    for mine, read in zip(before.rigid_body.combined(), after.rigid_body.combined(), strict=True):
-        assert np.abs(np.asarray(read) - mine).max() <= SAME * np.abs(mine).max()
+    for written, read in zip(before.rigid_body.combined(), after.rigid_body.combined(), strict=True):
+        assert np.abs(np.asarray(read) - written).max() <= SAME * np.abs(written).max()
     assert after.water == before.water
-    for mine, read in zip(by_ends(members_of(before)), by_ends(members_of(after)), strict=True):
+    for written, read in zip(by_ends(members_of(before)), by_ends(members_of(after)), strict=True):
         for k in range(3):
-            assert read[k] == pytest.approx(mine[k], rel=SAME, abs=1e-8)
-        for ours, theirs in zip(mine[3].directions, read[3].directions, strict=True):
-            assert theirs == pytest.approx(ours, abs=SAME)
-        own, returned = (p.coefficients[m.group].numbers() for p, m in ((before, mine[3]), (after, read[3])))
+            assert read[k] == pytest.approx(written[k], rel=SAME, abs=1e-8)
+        for ours, read_direction in zip(written[3].directions, read[3].directions, strict=True):
+            assert read_direction == pytest.approx(ours, abs=SAME)
+        own, returned = (p.coefficients[m.group].numbers() for p, m in ((before, written[3]), (after, read[3])))
         assert returned == pytest.approx(own, rel=SAME)
-        assert bool(read[3].diffracts) == bool(mine[3].diffracts)
+        assert bool(read[3].diffracts) == bool(written[3].diffracts)
     bare = [build(p.model_copy(update={"hydrostatics": Hydrostatics()})) for p in (before, after)]
-    mine, read = (next(load for load in model.loads if isinstance(load, Buoyancy)).upright(1.0) for model in bare)
+    written, read = (next(load for load in model.loads if isinstance(load, Buoyancy)).upright(1.0) for model in bare)
     for key in ("displaced_volume", "centre_of_buoyancy", "C33", "C44", "C55"):
-        assert read[key] == pytest.approx(mine[key], rel=SAME), key
+        assert read[key] == pytest.approx(written[key], rel=SAME), key
 
 
 @pytest.mark.slow
 def test_catenaries_come_back(tmp_path: Path) -> None:
     before, after = declared("catenary"), read_back("catenary", tmp_path)
-    mine, read, water = before.mooring, after.mooring, before.water
-    assert isinstance(mine, Catenary) and isinstance(read, Catenary)
+    written, read, water = before.mooring, after.mooring, before.water
+    assert isinstance(written, Catenary) and isinstance(read, Catenary)
     assert read.seabed.depth == 180.0
-    for kind, line in mine.line_types.items():
+    for kind, line in written.line_types.items():
         weight = line.weight(water.density, water.gravity)
         assert read.line_types[kind].weight(water.density, water.gravity) == pytest.approx(weight, rel=SAME)
         assert read.line_types[kind].axial_stiffness == pytest.approx(line.axial_stiffness, rel=SAME)
-    ends = [np.concatenate(copy) for line in mine.lines for copy in line.copies()]
+    ends = [np.concatenate(copy) for line in written.lines for copy in line.copies()]
     assert np.array([[*line.anchor, *line.fairlead] for line in read.lines]) == pytest.approx(
         np.array(ends), rel=SAME, abs=1e-8
     )
@@ -116,8 +116,8 @@ def test_what_raft_cannot_have_is_named_with_its_value() -> None:
     assert "cutoff 0.05" in said("catenary", "column.drag_z", Treatment.LEFT_OUT)
     assert "0.5" in said("catenary", "seabed.friction", Treatment.LEFT_OUT)
     assert "9.80665" in said("catenary", "mooring.line_types", Treatment.APPROXIMATED)
-    left = next(item for item in exported("volturnus-s").items if item.source == "mooring.stiffness")
-    assert left.warning and "mooring.C11 = 7.19e+04 N/m" in left.meaning and "C66" not in left.meaning
+    dropped = next(item for item in exported("volturnus-s").items if item.source == "mooring.stiffness")
+    assert dropped.warning and "mooring.C11 = 7.19e+04 N/m" in dropped.meaning and "C66" not in dropped.meaning
     assert "ends of the section exchanged" in said("catenary", "members: d, box", Treatment.APPROXIMATED)
     assert "no waterplane" in said("iti-barge", "members: buoyancy", Treatment.LEFT_OUT)
 

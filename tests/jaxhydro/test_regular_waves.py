@@ -96,8 +96,8 @@ def test_our_sums_are_raschii_s(coefficients, wave) -> None:
         assert_allclose(eta, wave["eta"][i], atol=1e-7 * wave["height"])
         wet = np.asarray(wave["z"]) < eta
         assert wet.sum() >= 2
-        for mine, other in ((velocity, wave["velocity"]), (acceleration, wave["acceleration"])):
-            assert_allclose(mine[:, wet], np.asarray(other[i]).T[:, wet], rtol=1e-6, atol=1e-7)
+        for ours, raschii in ((velocity, wave["velocity"]), (acceleration, wave["acceleration"])):
+            assert_allclose(ours[:, wet], np.asarray(raschii[i]).T[:, wet], rtol=1e-6, atol=1e-7)
 
 
 def test_a_low_steep_wave_is_stokes_and_airy(coefficients) -> None:

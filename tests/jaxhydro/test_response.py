@@ -49,11 +49,11 @@ def noisy_cycles(until: float, seed: int) -> Cycles:
 
 def test_noise_makes_no_cycles() -> None:
     """One per cent of noise: one half cycle every 12.5 s, without bias in decrement and period."""
-    found = [noisy_cycles(256.0, seed) for seed in range(8)]
-    assert all(18 <= len(cycles.period) <= 20 for cycles in found)
-    assert all(np.abs(cycles.period[1:] / 25 - 1).max() < 0.1 for cycles in found)
-    assert np.mean([cycles.decrement[:12].mean() for cycles in found]) == pytest.approx(2 * math.pi * 0.02, rel=0.03)
-    assert np.mean([cycles.period[:12].mean() for cycles in found]) == pytest.approx(25.0, rel=3e-3)
+    all_cycles = [noisy_cycles(256.0, seed) for seed in range(8)]
+    assert all(18 <= len(cycles.period) <= 20 for cycles in all_cycles)
+    assert all(np.abs(cycles.period[1:] / 25 - 1).max() < 0.1 for cycles in all_cycles)
+    assert np.mean([cycles.decrement[:12].mean() for cycles in all_cycles]) == pytest.approx(2 * math.pi * 0.02, rel=0.03)
+    assert np.mean([cycles.period[:12].mean() for cycles in all_cycles]) == pytest.approx(25.0, rel=3e-3)
 
 
 def test_a_crest_cut_off_by_the_records_end_is_no_cycle() -> None:

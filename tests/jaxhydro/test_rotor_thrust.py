@@ -25,8 +25,8 @@ def test_it_is_a_force_and_a_damping_matrix() -> None:
     """F = T along - b along along' v in body axes, at any position."""
     model = only(moored(rotor={"hub": HUB, "thrust": THRUST, "damping": DAMPING}), RotorThrust)
     for position in (np.zeros(6), np.array([3.0, 1.0, 0.5, 0.1, -0.2, 0.3])):
-        found = force(model, VELOCITY, position)
-        assert_allclose(found, THRUST * ALONG - DAMPING * ALONG * (ALONG @ VELOCITY), rtol=1e-12, atol=1e-6)
+        acting_force = force(model, VELOCITY, position)
+        assert_allclose(acting_force, THRUST * ALONG - DAMPING * ALONG * (ALONG @ VELOCITY), rtol=1e-12, atol=1e-6)
 
 
 def test_damping_is_that_of_a_matrix() -> None:

@@ -54,11 +54,15 @@ def test_a_sweep_and_a_low_swell_are_told() -> None:
     """Of a sweep the steepest sea state; beside a higher wind sea the swell that is too long for the depth."""
     rows = [{"hs": 6.5, "tp": 9.0}, {"hs": 2.0, "tp": 6.0}, {"hs": 6.2, "tp": 12.0}]
     plan, _ = plan_of(validate(Sweep, {"platform": "oc3-hywind", "scatter": rows, "order": 1}, "sweep"), "sweep")
-    found = {one.text: one.warning for one in near_limits(plan, SHALLOW, {})}
-    depth, highest, ursell = found
+    warning_by_text = {remark.text: remark.warning for remark in near_limits(plan, SHALLOW, {})}
+    depth, highest, ursell = warning_by_text
     assert "Hs 6.5 m, Tp 9 s: the significant height, 6.5 m, is 0.65 of the depth" in depth and "in 2 of 3 sea states" in depth
-    assert "would break" in highest and "the Ursell number is" in ursell and list(found.values()) == [True, False, False]
+    assert (
+        "would break" in highest and "the Ursell number is" in ursell and list(warning_by_text.values()) == [True, False, False]
+    )
     about = {"significant_wave_height": 3.2, "peak_period": 6.0}
     systems = (WaveSystem(3.0, 6.0), WaveSystem(1.2, 20.0))
-    (remark,) = (one for one in _limits(SimpleNamespace(environment=SHALLOW), about, 600.0, 1, systems) if "Ursell" in one.text)
+    (remark,) = (
+        entry for entry in _limits(SimpleNamespace(environment=SHALLOW), about, 600.0, 1, systems) if "Ursell" in entry.text
+    )
     assert remark.text.startswith("of the system of Tp 20 s the Ursell number is")

@@ -41,8 +41,8 @@ def test_a_power_of_height_and_period(models) -> None:
     factor = {"column.Cd_t": 2.0**-0.5 * 1.2, "linear_damping.B11": 2.0**0.8}
     changed = plain.with_values({label: f * plain.values[label] for label, f in factor.items()})
     assert_allclose(force(laws.in_sea(SeaState(8.0, 12.0)), velocity), force(changed, velocity), rtol=1e-12)
-    again = laws.in_sea(SeaState(1.0, 5.0)).in_sea(REFERENCE)
-    assert_allclose(force(again, velocity), force(plain, velocity), rtol=1e-15)
+    returned = laws.in_sea(SeaState(1.0, 5.0)).in_sea(REFERENCE)
+    assert_allclose(force(returned, velocity), force(plain, velocity), rtol=1e-15)
     assert plain.in_sea(SeaState(8.0, 12.0)) is plain
 
 
@@ -71,9 +71,9 @@ def test_exponents_added_to_what_is_there(models) -> None:
     plain, laws = models
     label = exponent_label("pontoon.Cd_z", "peak_period")
     key = ("pontoon.Cd_z", "peak_period")
-    more = with_exponents(laws.loads, {key: 0.0}, REFERENCE)
-    assert [type(a) for a in more] == [type(b) for b in laws.loads]
-    law = next(load for load in more if isinstance(load, SeaStateLaw) and label in load.values)
+    extended = with_exponents(laws.loads, {key: 0.0}, REFERENCE)
+    assert [type(a) for a in extended] == [type(b) for b in laws.loads]
+    law = next(load for load in extended if isinstance(load, SeaStateLaw) and label in load.values)
     assert float(law.values[exponent_label("column.Cd_t", "peak_period")]) == 1.0
     assert with_exponents(plain.loads, {}, REFERENCE) == plain.loads
     with pytest.raises(KeyError, match=r"no coefficient 'colunm\.Cd_t'"):
@@ -115,13 +115,13 @@ def test_simulations_take_the_coefficients_of_their_sea() -> None:
     height = state_of(waves).significant_height / REFERENCE.significant_height
     assert height > 1.3
     changed = plain.with_values({label: height**power * plain.values[label] for label, power in powers.items()})
-    found, expected = (np.asarray(jh.simulate(model, times, sea).position) for model in (laws, changed))
-    assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
-    assert np.abs(found - np.asarray(jh.simulate(plain, times, sea).position)).max() > 1e-3
+    positions, expected = (np.asarray(jh.simulate(model, times, sea).position) for model in (laws, changed))
+    assert_allclose(positions, expected, atol=1e-9 * np.abs(expected).max())
+    assert np.abs(positions - np.asarray(jh.simulate(plain, times, sea).position)).max() > 1e-3
 
 
 @pytest.mark.parametrize(
-    "change, said",
+    "change, pattern",
     [
         ({"exponents": {"colunm.Cd_t": {"peak_period": 1.0}}}, "sea_state_laws.exponents.colunm.Cd_t"),
         ({"exponents": {"column.Cd_t": {"peak_perod": 1.0}}}, "peak_perod"),
@@ -129,7 +129,7 @@ def test_simulations_take_the_coefficients_of_their_sea() -> None:
         ({"reference": {"significant_height": 0.0, "peak_period": 10.0}}, "significant_height"),
     ],
 )
-def test_messages(change: dict, said: str, tmp_path) -> None:
+def test_messages(change: dict, pattern: str, tmp_path) -> None:
     data = {
         "name": "test",
         "water": {"density": RHO, "depth": 200.0, "gravity": G},
@@ -140,5 +140,5 @@ def test_messages(change: dict, said: str, tmp_path) -> None:
     }
     path = tmp_path / "platform.yaml"
     YAML().dump(data, path)
-    with pytest.raises(jh.InputError, match=said):
+    with pytest.raises(jh.InputError, match=pattern):
         jh.load_model(path)

@@ -287,11 +287,11 @@ def test_differences_above_the_highest_bind_nothing() -> None:
     """All pairs written out, and their elevation by harmonics: only differences are left out, and the highest stays."""
     sea = random_sea(SHALLOW, 23)
     highest = 9 / float(sea.period)
-    every, some = bound_waves(sea, SHALLOW), bound_waves(sea, SHALLOW, highest_difference=highest)
-    binding = np.asarray(every.elevation) != 0
+    all_pairs, low_pairs = bound_waves(sea, SHALLOW), bound_waves(sea, SHALLOW, highest_difference=highest)
+    binding = np.asarray(all_pairs.elevation) != 0
     difference = np.arange(len(binding)) >= 23 * 24 // 2
-    expected = binding & ~(difference & (np.asarray(every.omega) > 9.5 * 2 * np.pi / float(sea.period)))
-    assert_array_equal(np.asarray(some.elevation) != 0, expected)
+    expected = binding & ~(difference & (np.asarray(all_pairs.omega) > 9.5 * 2 * np.pi / float(sea.period)))
+    assert_array_equal(np.asarray(low_pairs.elevation) != 0, expected)
     whole, part = (np.asarray(spectrum_of(sea, SHALLOW, (3.0, 4.0), BOTH, to)) for to in (None, highest))
     sums = np.asarray(spectrum_of(sea, SHALLOW, (3.0, 4.0), ("sum",)))
     differs = np.abs(whole - part) > 1e-15
@@ -407,8 +407,8 @@ def test_against_openfast(case: str, x: int) -> None:
         expected[f"FAcc{j}zi"] = (1j * waves.omega * w).real.sum(axis=1)
         expected[f"FDynP{j}"] = 1025.0 * (spin * (waves.omega * waves.potential * c)).real.sum(axis=1)
     for channel, ours in expected.items():
-        theirs = second[channel] - first_order[channel]
+        openfast = second[channel] - first_order[channel]
         rounding = 1e-5 * np.abs(second[channel]).max()  # six digits are printed of the sum of both orders
-        assert np.abs(ours - theirs).max() < 1e-4 * np.abs(theirs).max() + rounding, channel
+        assert np.abs(ours - openfast).max() < 1e-4 * np.abs(openfast).max() + rounding, channel
         if case == "comp":  # a single wave's potential is nothing in 200 m
-            assert float(ours @ theirs / (ours @ ours)) == pytest.approx(1.0, abs=1e-4), channel
+            assert float(ours @ openfast / (ours @ ours)) == pytest.approx(1.0, abs=1e-4), channel

@@ -54,10 +54,10 @@ def moored(rows: dict) -> dict:
     }
 
 
-def same(one: jh.Model, other: jh.Model, sea: Any = SEA) -> None:
+def same(first: jh.Model, second: jh.Model, sea: Any = SEA) -> None:
     for position, velocity in zip(*sample(5), strict=True):
-        for found, expected in zip(wrench(other, position, velocity, sea), wrench(one, position, velocity, sea)):
-            assert_allclose(found, expected, rtol=1e-14, atol=1e-14 * float(jnp.abs(expected).max()))
+        for actual, expected in zip(wrench(second, position, velocity, sea), wrench(first, position, velocity, sea)):
+            assert_allclose(actual, expected, rtol=1e-14, atol=1e-14 * float(jnp.abs(expected).max()))
 
 
 @pytest.mark.slow
@@ -66,12 +66,12 @@ def test_as_the_same_numbers_twice(directions: str) -> None:
     """The parameter is there once, under the label of the group that has the number; forces and added mass are the same."""
     twice, once = platforms(directions=directions)
     assert set(twice.values) >= LABELS
-    gone = {"leg.Ca_t", "leg.Cd_t", *(label for label in LABELS if label.startswith("beam."))}
-    assert set(once.values) == set(twice.values) - gone
+    shared_labels = {"leg.Ca_t", "leg.Cd_t", *(label for label in LABELS if label.startswith("beam."))}
+    assert set(once.values) == set(twice.values) - shared_labels
     same(twice, once)
-    other = {"column.Cd_t": 3.0, "pontoon.Ca_z": 0.3, "leg.Cd_z": 1.0}
+    changed = {"column.Cd_t": 3.0, "pontoon.Ca_z": 0.3, "leg.Cd_z": 1.0}
     copied = {"leg.Cd_t": 3.0, "beam.Ca_z": 0.3}
-    same(twice.with_values(other | copied), once.with_values(other))
+    same(twice.with_values(changed | copied), once.with_values(changed))
 
 
 @pytest.mark.slow
@@ -86,10 +86,10 @@ def test_gradients_add() -> None:
         return jax.jit(jax.jacfwd(numbers))(model.values)
 
     apart, together = slopes(twice), slopes(once)
-    for owner, other, names in (("column", "leg", ("Ca_t", "Cd_t")), ("pontoon", "beam", OWN)):
+    for owner, sharer, names in (("column", "leg", ("Ca_t", "Cd_t")), ("pontoon", "beam", OWN)):
         for name in names:
-            expected = apart[f"{owner}.{name}"] + apart[f"{other}.{name}"]
-            assert float(jnp.abs(apart[f"{other}.{name}"]).max()) > 0
+            expected = apart[f"{owner}.{name}"] + apart[f"{sharer}.{name}"]
+            assert float(jnp.abs(apart[f"{sharer}.{name}"]).max()) > 0
             assert_allclose(together[f"{owner}.{name}"], expected, rtol=1e-12, atol=1e-12 * float(jnp.abs(expected).max()))
 
 
@@ -124,15 +124,15 @@ def test_laws_over_the_sea_state() -> None:
     reference = {"significant_height": 4.0, "peak_period": 10.0}
     power = {"significant_height": -0.5}
     laws = {"reference": reference, "exponents": {"column.Cd_t": power}}
-    both = laws | {"exponents": {"column.Cd_t": power, "leg.Cd_t": power}}
+    twice_stated = laws | {"exponents": {"column.Cd_t": power, "leg.Cd_t": power}}
     twice, once = (
         build(COLUMN, LEG, coefficients={"column": OWN, "leg": leg}, sea_state_laws=law)
-        for leg, law in ((DIFFERENT, both), (SHARED, laws))
+        for leg, law in ((DIFFERENT, twice_stated), (SHARED, laws))
     )
     assert "column.Cd_t.Hs_exponent" in once.values and "leg.Cd_t.Hs_exponent" not in once.values
     same(twice.in_sea(SeaState(8.0, 10.0)), once.in_sea(SeaState(8.0, 10.0)))
     with pytest.raises(InputError, match=r"leg\.Cd_t.*It is shared: column\.Cd_t\."):
-        build(COLUMN, LEG, coefficients={"column": OWN, "leg": SHARED}, sea_state_laws=both)
+        build(COLUMN, LEG, coefficients={"column": OWN, "leg": SHARED}, sea_state_laws=twice_stated)
 
 
 def test_an_exponent_of_what_columns_and_pontoons_share() -> None:
@@ -170,10 +170,10 @@ def test_the_catalogue_asks_for_what_is_there() -> None:
     """Pressure of waves by every Ca of the model: none of a coefficient that is another's."""
     _, once = platforms()
     scales = {dof: NoticeableScales(1.0, 0.5, 1e5, 1e7) for dof in ("surge", "heave", "pitch")}
-    found = next(one for one in catalogue(once, scales, True, 1.0)[0] if one.effect == "wave_excitation")
-    pressed = {label.removeprefix("wave_excitation.") for label in found.labels}
+    candidate = next(entry for entry in catalogue(once, scales, True, 1.0)[0] if entry.effect == "wave_excitation")
+    pressed = {label.removeprefix("wave_excitation.") for label in candidate.labels}
     assert pressed == {"column.Cp_t", "column.Cp_z", "leg.Cp_z", "pontoon.Cp_t", "pontoon.Cp_z"}
-    assert isinstance(with_effects(once, found.labels).loads[-1], WaveExcitation)
+    assert isinstance(with_effects(once, candidate.labels).loads[-1], WaveExcitation)
 
 
 @pytest.mark.slow
@@ -192,9 +192,13 @@ def test_what_it_means_names_all_groups() -> None:
 
 
 def test_a_group_without_members_may_hold_what_others_share() -> None:
-    every = {"Ca_t": 0.9, "Cd_t": 1.1}
-    rest = {"Ca_z": 0.6, "Cd_z": 2.3}
-    rows = {"all": every, "column": rest | dict.fromkeys(every, "all"), "leg": rest | dict.fromkeys(every, "all")}
+    transverse = {"Ca_t": 0.9, "Cd_t": 1.1}
+    axial = {"Ca_z": 0.6, "Cd_z": 2.3}
+    rows = {
+        "all": transverse,
+        "column": axial | dict.fromkeys(transverse, "all"),
+        "leg": axial | dict.fromkeys(transverse, "all"),
+    }
     model = build(COLUMN, LEG, coefficients=rows)
     assert {label for label in model.values if label.endswith("_t")} == {"all.Ca_t", "all.Cd_t"}
     same(build(COLUMN, LEG, coefficients={"column": OWN, "leg": OWN}), model)
@@ -234,11 +238,11 @@ def test_a_calibration_frees_the_shared_one(tmp_path: Path) -> None:
         with (tmp_path / f"{name}.yaml").open("w") as file:
             YAML().dump(data, file)
     campaign = load_campaign(tmp_path)
-    found = calibrate(campaign)
-    assert set(found.parameters) == set(TRUE)
+    result = calibrate(campaign)
+    assert set(result.parameters) == set(TRUE)
     for label, value in TRUE.items():
-        assert found.parameters[label].value == pytest.approx(value, rel=2e-3)
-    assert float(found.model.values["column.Cd_t"]) == found.parameters["column.Cd_t"].value
+        assert result.parameters[label].value == pytest.approx(value, rel=2e-3)
+    assert float(result.model.values["column.Cd_t"]) == result.parameters["column.Cd_t"].value
 
 
 def test_free_asked_for_by_another_label_is_told() -> None:
@@ -302,14 +306,14 @@ BROKEN = [
 
 @pytest.mark.parametrize(("groups", "words"), BROKEN, ids=range(len(BROKEN)))
 def test_one_mistake_is_one_line(groups: dict, words: str) -> None:
-    (said,) = broken(**groups)
-    assert words in said
+    (message,) = broken(**groups)
+    assert words in message
 
 
 def test_longer_chains_and_circles() -> None:
     """Each chain is told where it begins, a circle once."""
     chain = broken(column=OWN, leg=OWN | {"Ca_t": "pontoon"}, pontoon=FLAT | {"Ca_t": "all"}, all={"Ca_t": "column"})
-    assert len(chain) == 2 and all("Name column here." in said for said in chain)
+    assert len(chain) == 2 and all("Name column here." in message for message in chain)
     circle = broken(column=OWN | {"Ca_t": "leg"}, leg=OWN | {"Ca_t": "pontoon"}, pontoon=FLAT | {"Ca_t": "column"})
     assert len(circle) == 1 and "column -> leg -> pontoon -> column" in circle[0]
     into = broken(column=OWN | {"Ca_t": "leg"}, leg=OWN | {"Ca_t": "column"}, pontoon=FLAT | {"Ca_t": "leg"})
@@ -321,6 +325,6 @@ def test_a_label_of_what_is_shared_is_pointed_to_its_owner() -> None:
     model = build(COLUMN, LEG, coefficients={"column": OWN, "leg": SHARED})
     with pytest.raises(KeyError, match=r"no parameter 'leg\.Cd_t'.*It is shared: column\.Cd_t\."):
         model.with_values({"leg.Cd_t": 1.0})
-    with pytest.raises(KeyError) as other:
+    with pytest.raises(KeyError) as error:
         model.about("leg.Cd_q")
-    assert "shared" not in str(other.value)
+    assert "shared" not in str(error.value)

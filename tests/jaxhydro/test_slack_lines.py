@@ -40,8 +40,8 @@ def told(data: dict[str, Any]) -> list[str]:
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # a model says it by its remarks alone
         model = build(validate(Platform, data, "shallow"))
-    assert all(one.warning for one in model.remarks)
-    return [one.text for one in model.remarks]
+    assert all(remark.warning for remark in model.remarks)
+    return [remark.text for remark in model.remarks]
 
 
 def test_lines_that_hang_through_are_told() -> None:
@@ -72,12 +72,12 @@ def test_a_pretension_of_zero_is_no_slack_line() -> None:
 def test_the_command_line_says_it_before_it_runs(tmp_path) -> None:
     file = tmp_path / "platform.yaml"
     file.write_text(yaml.safe_dump(platform(115.0, 115.0, 115.0)), encoding="utf-8")
-    found = CliRunner().invoke(
+    result = CliRunner().invoke(
         app, ["simulate", str(file), "--release", "surge=5", "--duration", "20", "--out", str(tmp_path / "o")]
     )
-    assert found.exit_code == 0
-    assert found.stderr.count("every line is slack") == 1
-    assert found.stderr.startswith("jaxhydro: warning: mooring.lines: every line is slack")
+    assert result.exit_code == 0
+    assert result.stderr.count("every line is slack") == 1
+    assert result.stderr.startswith("jaxhydro: warning: mooring.lines: every line is slack")
 
 
 def test_python_is_warned_where_a_file_is_loaded(tmp_path) -> None:
@@ -106,5 +106,9 @@ def test_a_campaign_finds_it(tmp_path) -> None:
         "tests": [{"id": "one", "kind": "decay", "degree_of_freedom": "heave", "file": "heave.csv"}],
     }
     (tmp_path / "campaign.yaml").write_text(yaml.safe_dump(manifest), encoding="utf-8")
-    said = [one for one in load_campaign(tmp_path).findings if "slack" in one.message]
-    assert len(said) == 1 and said[0].place == "platform.yaml" and said[0].message.startswith("mooring.lines: one line is")
+    slack_findings = [finding for finding in load_campaign(tmp_path).findings if "slack" in finding.message]
+    assert (
+        len(slack_findings) == 1
+        and slack_findings[0].place == "platform.yaml"
+        and slack_findings[0].message.startswith("mooring.lines: one line is")
+    )

@@ -37,12 +37,12 @@ SUBMERGED = (
 )
 
 
-def built(*members: dict, Ca_t: float = 0.9, Ca_z: float = 0.0, pontoon_z: float = 2.1, **more) -> Model:
+def built(*members: dict, Ca_t: float = 0.9, Ca_z: float = 0.0, pontoon_z: float = 2.1, **keys) -> Model:
     groups = {member["group"] for member in members}
     rows = {"column": {"Ca_t": Ca_t, "Ca_z": Ca_z}, "pontoon": {"Ca_t": Ca_t, "Ca_z": pontoon_z}}
     coefficients = {group: row | {"Cd_t": 0.0, "Cd_z": 0.0} for group, row in rows.items() if group in groups}
     data = {"name": "slender", "water": {"density": RHO, "depth": 200.0, "gravity": G}, "rigid_body": BODY}
-    data |= {"members": list(members), "coefficients": coefficients, "diffraction": "none"} | more
+    data |= {"members": list(members), "coefficients": coefficients, "diffraction": "none"} | keys
     return jh.build(jh.Platform.model_validate(data))
 
 
@@ -131,13 +131,13 @@ def test_gradient_of_the_velocity(name: str) -> None:
     velocity = np.asarray(flow(sea, time, moved).velocity).reshape(3, 3, 2, 3)
     expected = (velocity[:, :, 0] - velocity[:, :, 1]) / (2 * step)
     cylinders = CYLINDERS if "prepared" in name else None
-    found = np.asarray(flow(sea, time, points, cylinders, True).gradient)
+    gradient = np.asarray(flow(sea, time, points, cylinders, True).gradient)
     scale = np.abs(expected).max()
     assert scale > 0.005
     # a prepared sea is one of waves to 1e-5 only, so its difference quotients have that error too
-    assert_allclose(found, expected, atol=(1e-3 if "prepared" in name else 1e-7) * scale)
-    assert_allclose(np.einsum("iin->n", found), 0.0, atol=1e-9 * scale)
-    assert_allclose(found, np.swapaxes(found, 0, 1), atol=1e-9 * scale)
+    assert_allclose(gradient, expected, atol=(1e-3 if "prepared" in name else 1e-7) * scale)
+    assert_allclose(np.einsum("iin->n", gradient), 0.0, atol=1e-9 * scale)
+    assert_allclose(gradient, np.swapaxes(gradient, 0, 1), atol=1e-9 * scale)
 
 
 def test_pressure_on_a_closed_body() -> None:
@@ -159,10 +159,10 @@ def test_pressure_on_a_closed_body() -> None:
         for order, field in ((1, waves.acceleration), (2, np.einsum("ijn,jn->in", waves.gradient, waves.velocity))):
             push = RHO * np.asarray(field) * share
             expected = np.concatenate([push.sum(axis=1), np.cross(points, push, axis=0).sum(axis=1)])
-            one = wrench(with_share(model, 1.0), np.zeros(6), np.zeros(6), sea, time)[0]
+            with_forces = wrench(with_share(model, 1.0), np.zeros(6), np.zeros(6), sea, time)[0]
             none = wrench(with_share(model, 0.0), np.zeros(6), np.zeros(6), sea, time)[0]
-            found = none if order == 1 else one - none
-            assert_allclose(found, expected, atol=4e-3 * np.abs(expected).max())
+            acting_force = none if order == 1 else with_forces - none
+            assert_allclose(acting_force, expected, atol=4e-3 * np.abs(expected).max())
 
 
 def test_a_sphere_of_water() -> None:
@@ -181,9 +181,9 @@ def test_a_sphere_of_water() -> None:
         on_strips = RHO * volume * ((1 + mass) * (slope @ [u, 0, w])[0] + mass * u * slope[2, 2])
         ends = [np.asarray(flow(sea, time, np.array([[0.0], [0.0], [z]])).velocity)[:, 0] for z in (-6.0, -5.0)]
         at_ends = RHO * mass * volume * (ends[0][0] * ends[0][2] - ends[1][0] * ends[1][2])
-        one = wrench(with_share(model, 1.0), np.zeros(6), np.zeros(6), sea, time)[0]
+        with_forces = wrench(with_share(model, 1.0), np.zeros(6), np.zeros(6), sea, time)[0]
         none = wrench(with_share(model, 0.0), np.zeros(6), np.zeros(6), sea, time)[0]
-        assert_allclose((one - none)[0], on_strips + at_ends, rtol=3e-3)
+        assert_allclose((with_forces - none)[0], on_strips + at_ends, rtol=3e-3)
 
 
 def test_computed_excitation_takes_them_away() -> None:
@@ -194,16 +194,18 @@ def test_computed_excitation_takes_them_away() -> None:
     table = Excitation.of(np.linspace(0.2, 2.0, 5), np.zeros((6, 5), complex))
     model = built(*SUBMERGED[:1])
     sea = bichromatic()
-    found = []
+    differences = []
     for share in (0.0, 1.0):
         plain, whole = (
             with_share(model, second).with_effect(ComputedExcitation(table, jnp.asarray(share))) for second in (0.0, 1.0)
         )
         waves = whole.through(sea)
         velocity = np.array([0.3, -0.2, 0.4, 0.01, 0.02, -0.01])
-        found.append(wrench(whole, np.zeros(6), velocity, waves, 3.0)[0] - wrench(plain, np.zeros(6), velocity, waves, 3.0)[0])
-    assert np.abs(found[0]).max() > 1e4
-    assert_allclose(found[1], 0.0, atol=1e-9 * float(np.abs(found[0]).max()))
+        differences.append(
+            wrench(whole, np.zeros(6), velocity, waves, 3.0)[0] - wrench(plain, np.zeros(6), velocity, waves, 3.0)[0]
+        )
+    assert np.abs(differences[0]).max() > 1e4
+    assert_allclose(differences[1], 0.0, atol=1e-9 * float(np.abs(differences[0]).max()))
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -227,8 +229,8 @@ def test_raft(name: str) -> None:
     time = np.arange(400) * 200.0 / 400  # a whole number of periods of both waves and of their sum and difference
     turn = np.exp(1j * np.outer(omega, time))
     position, velocity, acceleration = (((1j * omega) ** n * amplitude @ turn).real.T for n in range(3))
-    each = jax.vmap(wrench.__wrapped__, (None, 0, 0, None, 0))
-    force, added = (np.asarray(x) for x in eqx.filter_jit(each)(model, position, velocity, sea, time))
+    wrenches = jax.vmap(wrench.__wrapped__, (None, 0, 0, None, 0))
+    force, added = (np.asarray(x) for x in eqx.filter_jit(wrenches)(model, position, velocity, sea, time))
     force = force - np.einsum("tij,tj->ti", added, acceleration)
     bottom = np.array(own["rA"]) + position[:, :3]
     at_end = one_program(jax.vmap(lambda t, x: sea.flow(t, x[:, None]).velocity[:, 0]))(time, bottom)
@@ -236,6 +238,6 @@ def test_raft(name: str) -> None:
     force[:, 2] -= left_out
     moment_arm = np.cross(np.array(own["rA"]), np.stack([0 * left_out, 0 * left_out, left_out], axis=1))
     force[:, 3:] -= moment_arm
-    found = 2 * np.mean(force * np.exp(-1j * (omega[0] - omega[1]) * time)[:, None], axis=0) / small**2
+    drift = 2 * np.mean(force * np.exp(-1j * (omega[0] - omega[1]) * time)[:, None], axis=0) / small**2
     for part in (slice(0, 3), slice(3, 6)):
-        assert_allclose(found[part], expected[part], atol=3e-3 * np.abs(expected[part]).max())
+        assert_allclose(drift[part], expected[part], atol=3e-3 * np.abs(expected[part]).max())

@@ -62,7 +62,7 @@ def test_a_force_moves_the_platform_along_its_curve() -> None:
 
 @pytest.mark.slow
 def test_what_the_command_prints() -> None:
-    status, said = statics("volturnus-s-focal", "--offset", "surge=5", "--force", "surge=1e5")
+    status, output = statics("volturnus-s-focal", "--offset", "surge=5", "--force", "surge=1e5")
     assert status == 0
     for words in (
         "Natural periods",
@@ -72,7 +72,7 @@ def test_what_the_command_prints() -> None:
         "Held in surge",
         "Under a",
     ):
-        assert words in said
+        assert words in output
 
 
 def test_mistakes_name_the_option() -> None:
@@ -81,8 +81,8 @@ def test_mistakes_name_the_option() -> None:
         (("--force", "surge=much"), "a number after surge= expected"),
         (("--offset", "pitch=95"), "less than 90 deg expected, found pitch=95"),
     ):
-        status, said = statics("volturnus-s", *words)
-        assert status == 2 and expected in said.replace(" │ │ ", " ") and words[0] in said
+        status, output = statics("volturnus-s", *words)
+        assert status == 2 and expected in output.replace(" │ │ ", " ") and words[0] in output
 
 
 def test_waves_that_nothing_takes_are_told(tmp_path: Path) -> None:
@@ -106,9 +106,9 @@ def test_a_platform_that_does_not_rest_as_it_was_drawn_is_told(tmp_path: Path) -
 def test_a_line_that_is_stretched_by_much_is_told() -> None:
     short = copy.deepcopy(VOLTURNUS)
     short["lines"][0]["segments"][0]["length"] = 720.0  # of 801.5 m to the anchor
-    (remark,) = [one for one in platform(short).remarks if "stretched" in one.text]
+    (remark,) = [entry for entry in platform(short).remarks if "stretched" in entry.text]
     assert remark.warning and "line 1, 2, 3 is stretched by up to 11%" in remark.text
-    assert not any("stretched" in one.text for one in volturnus().remarks)
+    assert not any("stretched" in remark.text for remark in volturnus().remarks)
 
 
 def test_units_suit_the_platform(tmp_path: Path) -> None:
@@ -129,7 +129,9 @@ def test_units_suit_the_platform(tmp_path: Path) -> None:
 def test_a_campaign_stands_for_its_platform(tmp_path: Path) -> None:
     """By its folder, its file or its name; a folder without a campaign is told."""
     folder = embedded_campaigns()["volturnus-s-decays"]
-    assert {platform_of(str(one)) for one in (folder, folder / "campaign.yaml", folder.name)} == {str(folder / "platform.yaml")}
+    assert {platform_of(str(name)) for name in (folder, folder / "campaign.yaml", folder.name)} == {
+        str(folder / "platform.yaml")
+    }
     assert platform_of("oc3-hywind") == "oc3-hywind"
     code, text = statics(str(tmp_path))
     assert code == 2 and "a folder without campaign.yaml" in text

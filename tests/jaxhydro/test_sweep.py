@@ -170,11 +170,11 @@ def test_cases_that_differ_are_named_by_their_key() -> None:
     assert apart(headings=[0, 40]) == ("headings", before, now)
     weighed = [{"heading": 0, "probability": 1}, {"heading": 30, "probability": 3}]
     assert apart(headings=weighed) == ("headings", before, "heading 30 deg, with 75.0000% of the life")
-    other = [*rows[:2], rows[2] | {"gamma": 3}, rows[3]]
+    changed_rows = [*rows[:2], rows[2] | {"gamma": 3}, rows[3]]
     before, now = (f"Hs 3 m, Tp 7 s{gamma}, with 20.0000% of the life" for gamma in ("", ", gamma 3"))
-    assert apart(scatter=other) == ("scatter", before, now)
-    other = [*rows[:2], rows[2] | {"probability": 12}, rows[3]]
-    assert apart(scatter=other) == ("scatter", before, "Hs 3 m, Tp 7 s, with 60.0000% of the life")
+    assert apart(scatter=changed_rows) == ("scatter", before, now)
+    changed_rows = [*rows[:2], rows[2] | {"probability": 12}, rows[3]]
+    assert apart(scatter=changed_rows) == ("scatter", before, "Hs 3 m, Tp 7 s, with 60.0000% of the life")
 
 
 # --- notes
@@ -290,12 +290,16 @@ def test_ranges_are_those_of_even_cycles_and_of_the_standards_example() -> None:
 def test_what_is_kept_of_records_leaves_the_transient_out() -> None:
     time = np.arange(0.0, 400.0, 0.5)
     values = np.where(time < 100, 50.0, 2 * np.sin(2 * math.pi * time / 10))
-    kept = run_results(time, 100.0, {"wave": values, "line1": 1e6 * values}, 9.0, (3.0,), 1.0)
-    assert kept.statistics[0, 1] == pytest.approx(math.sqrt(2), rel=1e-3)
-    assert kept.statistics[1, 1] == pytest.approx(1e6 * math.sqrt(2), rel=1e-3)
-    assert kept.density.shape == (2, len(frequencies(time[time >= 100])))
-    assert kept.bands[0, 1] == pytest.approx(2.0, rel=0.02) and np.isnan(kept.bands[0, 0]) and np.isnan(kept.bands[1]).all()
-    assert kept.ranges[0, 0] == pytest.approx(4.0 * 0.1 ** (1 / 3), rel=0.02)
+    summary = run_results(time, 100.0, {"wave": values, "line1": 1e6 * values}, 9.0, (3.0,), 1.0)
+    assert summary.statistics[0, 1] == pytest.approx(math.sqrt(2), rel=1e-3)
+    assert summary.statistics[1, 1] == pytest.approx(1e6 * math.sqrt(2), rel=1e-3)
+    assert summary.density.shape == (2, len(frequencies(time[time >= 100])))
+    assert (
+        summary.bands[0, 1] == pytest.approx(2.0, rel=0.02)
+        and np.isnan(summary.bands[0, 0])
+        and np.isnan(summary.bands[1]).all()
+    )
+    assert summary.ranges[0, 0] == pytest.approx(4.0 * 0.1 ** (1 / 3), rel=0.02)
 
 
 def test_a_life_is_its_runs_weighed_by_their_probability() -> None:
@@ -309,8 +313,8 @@ def test_a_life_is_its_runs_weighed_by_their_probability() -> None:
     assert (life.maximum, life.minimum) == (most.max(), -most.max())
     assert life.maximum_of_seed == pytest.approx(most.max(axis=0).mean())
     assert life.maximum_spread == pytest.approx(most.max(axis=0).std(ddof=1))
-    each = np.sqrt(p @ deviation**2)
-    assert life.standard_deviation_spread == pytest.approx(each.std(ddof=1))
+    by_seed = np.sqrt(p @ deviation**2)
+    assert life.standard_deviation_spread == pytest.approx(by_seed.std(ddof=1))
 
 
 def test_failed_runs_are_left_out_of_a_life() -> None:

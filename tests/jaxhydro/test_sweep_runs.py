@@ -91,8 +91,8 @@ def results(out: Path) -> dict[str, np.ndarray]:
         return {name: data[name].values for name in (*VARIABLES, "status", "reason")}
 
 
-def assert_bitwise(out: Path, other: Path) -> None:
-    first, second = results(out), results(other)
+def assert_bitwise(out: Path, reference: Path) -> None:
+    first, second = results(out), results(reference)
     for name in (*VARIABLES, "status"):
         assert first[name].tobytes() == second[name].tobytes(), name
     assert (first["reason"] == second["reason"]).all()
@@ -124,19 +124,19 @@ def test_a_run_is_what_simulate_does_with_the_same_options(whole, tmp_path) -> N
     plain = jh.load_model(tmp_path / "plain.yaml").with_values(values)
     moved = jh.simulate(plain, setup.times, sea, step=setup.limit)
     with xr.open_zarr(whole / RESULTS) as data:
-        one = data.isel(case=1).sel(seed=5).load()
-    np.testing.assert_allclose(one.series.sel(channel="surge"), moved["surge"], atol=1e-10)
-    np.testing.assert_allclose(one.series.sel(channel="pitch"), np.rad2deg(moved["pitch"]), atol=1e-10)
-    np.testing.assert_allclose(one.series.sel(channel="wave"), sea.gauge(setup.times), atol=1e-12)
-    kept = one.series.where(one.time >= 37.5, drop=True)
-    np.testing.assert_allclose(one.statistics.sel(statistic="standard_deviation"), kept.std("time"), rtol=1e-9)
-    np.testing.assert_allclose(one.statistics.sel(statistic="maximum"), kept.max("time"))
-    assert list(one.channel.values) == ["wave", "surge", "heave", "pitch", "line1", "line2", "line3"]
-    assert list(one.unit.values) == ["m", "m", "m", "deg", "N", "N", "N"]
+        run = data.isel(case=1).sel(seed=5).load()
+    np.testing.assert_allclose(run.series.sel(channel="surge"), moved["surge"], atol=1e-10)
+    np.testing.assert_allclose(run.series.sel(channel="pitch"), np.rad2deg(moved["pitch"]), atol=1e-10)
+    np.testing.assert_allclose(run.series.sel(channel="wave"), sea.gauge(setup.times), atol=1e-12)
+    after_transient = run.series.where(run.time >= 37.5, drop=True)
+    np.testing.assert_allclose(run.statistics.sel(statistic="standard_deviation"), after_transient.std("time"), rtol=1e-9)
+    np.testing.assert_allclose(run.statistics.sel(statistic="maximum"), after_transient.max("time"))
+    assert list(run.channel.values) == ["wave", "surge", "heave", "pitch", "line1", "line2", "line3"]
+    assert list(run.unit.values) == ["m", "m", "m", "deg", "N", "N", "N"]
     # at rest the lines pull 1e6 N each, and the one that surge slackens pulls least when surge is largest
-    line = kept.sel(channel="line1")
+    line = after_transient.sel(channel="line1")
     assert float(line.mean()) == pytest.approx(1e6, rel=0.02)
-    assert float(xr.corr(line, kept.sel(channel="surge"))) < -0.9
+    assert float(xr.corr(line, after_transient.sel(channel="surge"))) < -0.9
 
 
 def test_the_store_says_what_it_holds(stored) -> None:
@@ -151,10 +151,10 @@ def test_the_store_says_what_it_holds(stored) -> None:
 
 
 def test_a_run_that_cannot_be_is_recorded_and_the_others_go_on(stored) -> None:
-    found = results(stored)
-    assert (found["status"] == [[DONE], [DONE], [FAILED]]).all()
-    assert all("break" in reason for reason in found["reason"][2]) and not found["reason"][:2].any()
-    assert np.isfinite(found["statistics"][:2, ..., :4]).all() and np.isnan(found["statistics"][2]).all()
+    stored_results = results(stored)
+    assert (stored_results["status"] == [[DONE], [DONE], [FAILED]]).all()
+    assert all("break" in reason for reason in stored_results["reason"][2]) and not stored_results["reason"][:2].any()
+    assert np.isfinite(stored_results["statistics"][:2, ..., :4]).all() and np.isnan(stored_results["statistics"][2]).all()
 
 
 def test_the_command_writes_what_the_life_is(file, stored) -> None:
@@ -221,9 +221,9 @@ def test_a_sweep_that_is_told_to_end_says_that_it_can_go_on(file, tmp_path) -> N
         if "runs, " in line:  # the first is done
             process.terminate()
             break
-    rest = process.stderr.read()
-    assert process.wait(timeout=60) == 130, seen + rest
-    assert "the same command goes on" in rest and 1 <= len(chunks(tmp_path / "o")) < RUNS
+    last_output = process.stderr.read()
+    assert process.wait(timeout=60) == 130, seen + last_output
+    assert "the same command goes on" in last_output and 1 <= len(chunks(tmp_path / "o")) < RUNS
 
 
 def test_a_stop_at_any_time_says_what_is_there(file, stored, tmp_path, monkeypatch) -> None:
@@ -320,14 +320,14 @@ def test_runs_at_once_are_runs_one_by_one(whole, order) -> None:
     setup = setup._replace(plan=replace(setup.plan, order=order))
     runs = [setup.plan.run(number) for number in (0, 9, 16, 10, 11)]
     runs[1] = runs[1]._replace(case=runs[1].case._replace(heading=30.0))
-    for run, one in zip(runs, run_outcomes(setup, runs)):
+    for run, outcome in zip(runs, run_outcomes(setup, runs)):
         single = run_outcome(setup, run)
         if isinstance(single, str):
-            assert one == single and run.number == 16
+            assert outcome == single and run.number == 16
             continue
         for name in VARIABLES:
             scale = np.nan_to_num(np.abs(getattr(single, name))).max(axis=-1, keepdims=True) + 1e-12
-            np.testing.assert_allclose(getattr(one, name) / scale, getattr(single, name) / scale, atol=1e-9, err_msg=name)
+            np.testing.assert_allclose(getattr(outcome, name) / scale, getattr(single, name) / scale, atol=1e-9, err_msg=name)
 
 
 # --- resuming something else
@@ -355,14 +355,14 @@ def test_another_platform_is_not_mixed_in(stored, tmp_path) -> None:
 
 def test_another_program_is_not_mixed_in(file, stored, monkeypatch) -> None:
     """Other source code of either package, or another version of what computes."""
-    before, known = chunks(stored), fingerprints.version
-    with monkeypatch.context() as other:
-        other.setattr(fingerprints, "sources", lambda: "of a load that was changed")
+    before, version_of = chunks(stored), fingerprints.version
+    with monkeypatch.context() as patched:
+        patched.setattr(fingerprints, "sources", lambda: "of a load that was changed")
         text = command("sweep", file, "--out", stored, status=2)
         assert "source code: expected that which made the runs that are there, found another. Another --out" in text
-    monkeypatch.setattr(fingerprints, "version", lambda name: "99.0" if name == "diffrax" else known(name))
+    monkeypatch.setattr(fingerprints, "version", lambda name: "99.0" if name == "diffrax" else version_of(name))
     text = command("sweep", file, "--out", stored, status=2)
-    assert f"diffrax: expected {known('diffrax')}, which made the runs that are there, found 99.0" in text
+    assert f"diffrax: expected {version_of('diffrax')}, which made the runs that are there, found 99.0" in text
     assert chunks(stored) == before
 
 
@@ -425,15 +425,15 @@ def test_a_life_changes_with_drag_as_its_derivative_says(file) -> None:
     """Forward mode through the simulations, against central differences of whole sweeps."""
     sweep = load_sweep(file).model_copy(update={"seeds": 2, "scatter": load_sweep(file).scatter[:2]})
     label, step = "column.Cd_t", 0.02
-    both = [label, "linear_damping.B11"]
-    found = lifetime_sensitivity(sweep, both)
+    labels = [label, "linear_damping.B11"]
+    sensitivity = lifetime_sensitivity(sweep, labels)
 
     def deviation(cd: float) -> float:
         moved = Path(sweep.platform).with_name(f"cd{cd}.yaml")
         moved.write_text(Path(sweep.platform).read_text().replace("Cd_t: 1.0", f"Cd_t: {cd}"))
-        return lifetime_sensitivity(sweep.model_copy(update={"platform": str(moved)}), both).value
+        return lifetime_sensitivity(sweep.model_copy(update={"platform": str(moved)}), labels).value
 
     slope = (deviation(1.0 + step) - deviation(1.0 - step)) / (2 * step)
-    assert found.gradient[label] == pytest.approx(slope, rel=2e-3)
-    assert found.gradient[label] < 0 and found.gradient["linear_damping.B11"] < 0
-    assert found.value == pytest.approx(np.sqrt(np.array([60, 35]) / 95 @ (found.deviation**2).mean(axis=1)))
+    assert sensitivity.gradient[label] == pytest.approx(slope, rel=2e-3)
+    assert sensitivity.gradient[label] < 0 and sensitivity.gradient["linear_damping.B11"] < 0
+    assert sensitivity.value == pytest.approx(np.sqrt(np.array([60, 35]) / 95 @ (sensitivity.deviation**2).mean(axis=1)))

@@ -94,11 +94,11 @@ def test_runs_are_those_of_simulate_and_go_on_whether_long_crested_or_not(tmp_pa
     setup = setup_of(plan, tmp_path / "buoy.yaml", None)
     how = {"seed": 3, "amplitudes": "deterministic", "low": plan.low, "cutoff": plan.cutoff, "order": 1}
     systems = (WaveSystem(1.0, 8.0, None, 20.0), WaveSystem(2.0, 12.0, None, -40.0))
-    asked = RequestedSea.of_systems(systems, **how, stretching="vertical", transient=None)
-    expected, found = build_sea(setup.model, asked, plan.duration), sea_of(setup, plan.run(1))
+    requested = RequestedSea.of_systems(systems, **how, stretching="vertical", transient=None)
+    expected, sea = build_sea(setup.model, requested, plan.duration), sea_of(setup, plan.run(1))
     for name in ("amplitude", "phase", "heading"):
-        assert (np.asarray(getattr(found.components, name)) == np.asarray(getattr(expected.sea.components, name))).all()
-    assert shares_in_band(plan)[1] == pytest.approx(float(0.5 * (found.components.amplitude**2).sum()) / (5.0 / 16), rel=1e-9)
+        assert (np.asarray(getattr(sea.components, name)) == np.asarray(getattr(expected.sea.components, name))).all()
+    assert shares_in_band(plan)[1] == pytest.approx(float(0.5 * (sea.components.amplitude**2).sum()) / (5.0 / 16), rel=1e-9)
     together = []
     monkeypatch.setattr(batch, "run_outcome", lambda setup, run: f"alone {run.number}")
     monkeypatch.setattr(batch, "simulate_in_halves", lambda model, seas, *_, **__: together.extend(seas) or [None] * len(seas))

@@ -63,29 +63,31 @@ def test_a_regular_wave_outside_a_table_is_refused(tmp_path: Path, line: str, ke
     status, output = run(tmp_path / "platform.yaml", "--wave-height", 0.02, "--wave-period", outside, "--out", tmp_path / "o")
     assert status == 2 and f"--wave-period: expected a wave within the {key} table" in output
     assert not (tmp_path / "o" / "motion.csv").exists()
-    found = [one.share_outside(np.array([2 * math.pi / inside]), np.ones(1)) for one in table_ranges(model)]
-    assert found == [0.0]
+    shares = [table_range.share_outside(np.array([2 * math.pi / inside]), np.ones(1)) for table_range in table_ranges(model)]
+    assert shares == [0.0]
 
 
 def test_a_table_that_does_not_act_refuses_nothing(tmp_path: Path) -> None:
     """A candidate is at a share of 0; its table counts where a diagnosis may let it in."""
     excitation(tmp_path, 0.5, 1.2)
     model = model_of(tmp_path, "excitation: {file: hull.3, use: candidate}")
-    assert table_ranges(model) == () and [one.key for one in table_ranges(model, candidates=True)] == ["excitation"]
+    assert table_ranges(model) == () and [table_range.key for table_range in table_ranges(model, candidates=True)] == [
+        "excitation"
+    ]
 
 
 def test_the_ends_of_a_range_are_inside() -> None:
-    one = TableRange("excitation", 0.5, 1.2)
+    limits = TableRange("excitation", 0.5, 1.2)
     table = Excitation.of(np.array([0.5, 1.2]), np.ones((6, 2)))
     printed = 2 * math.pi / np.array([5.236, 12.566])  # as messages have them
-    assert not one.outside(printed).any() and (np.abs(np.asarray(table.at(printed))) > 0.99).all()
+    assert not limits.outside(printed).any() and (np.abs(np.asarray(table.at(printed))) > 0.99).all()
     assert not np.asarray(table.at(np.array([0.49, 1.21]))).any()
-    assert not one.outside(np.array([0.5, 0.5 - 1e-8, 0.9, 1.2, 1.2 + 1e-8])).any()
-    assert one.outside(np.array([0.49, 1.21])).all()
-    assert_allclose(one.share_outside(np.array([0.4, 0.6, 1.0, 1.3]), np.array([1.0, 2.0, 3.0, 4.0])), 0.5)
-    assert one.remark(0.0) is None and one.remark(1e-5) is None
-    assert not one.remark(0.009).warning and one.remark(0.011).warning
-    assert "1.10% of the energy of the sea lies outside the excitation table" in one.remark(0.011).text
+    assert not limits.outside(np.array([0.5, 0.5 - 1e-8, 0.9, 1.2, 1.2 + 1e-8])).any()
+    assert limits.outside(np.array([0.49, 1.21])).all()
+    assert_allclose(limits.share_outside(np.array([0.4, 0.6, 1.0, 1.3]), np.array([1.0, 2.0, 3.0, 4.0])), 0.5)
+    assert limits.remark(0.0) is None and limits.remark(1e-5) is None
+    assert not limits.remark(0.009).warning and limits.remark(0.011).warning
+    assert "1.10% of the energy of the sea lies outside the excitation table" in limits.remark(0.011).text
 
 
 def test_a_sea_tells_its_share_outside(tmp_path: Path) -> None:
@@ -138,7 +140,7 @@ def test_a_sweep_tells_its_worst_sea_state(tmp_path: Path) -> None:
     text = "platform: a.yaml\nscatter: [{hs: 2.0, tp: 8.0}, {hs: 2.0, tp: 16.0}]\nduration: 300\n"
     (tmp_path / "sweep.yaml").write_text(text, encoding="utf-8")
     made = prepared(load_sweep(tmp_path / "sweep.yaml"), "sweep.yaml")
-    (remark,) = [one for one in made.remarks if "outside" in one.text]
+    (remark,) = [entry for entry in made.remarks if "outside" in entry.text]
     assert remark.warning and "of the energy of Hs 2 m, Tp 16 s lies outside the excitation table" in remark.text
     assert made.about["notes"][0] == remark.text
 
@@ -160,8 +162,8 @@ def test_a_campaign_tells_waves_outside(tmp_path: Path) -> None:
     excitation(tmp_path, 0.5, 1.2)
     platform(tmp_path, "excitation: {file: hull.3, use: candidate}")
     campaign(tmp_path, "irregular", 20.0)
-    said = [finding for finding in load_campaign(tmp_path).findings if "excitation table" in finding.message]
-    assert len(said) == 1 and said[0].test == "sea-1" and "% of the energy of the sea lies outside" in said[0].message
+    outside = [finding for finding in load_campaign(tmp_path).findings if "excitation table" in finding.message]
+    assert len(outside) == 1 and outside[0].test == "sea-1" and "% of the energy of the sea lies outside" in outside[0].message
     campaign(tmp_path, "irregular", 9.0)
     assert not [finding for finding in load_campaign(tmp_path).findings if "excitation table" in finding.message]
     campaign(tmp_path, "regular", 20.0)
@@ -178,8 +180,10 @@ def test_remarks_on_files_are_a_campaigns_warnings(tmp_path: Path) -> None:
     (tmp_path / "hull.nc").write_bytes(CYLINDER.read_bytes())
     platform(tmp_path, "excitation: {file: hull.nc, use: candidate}")
     campaign(tmp_path, "irregular", 9.0)
-    said = [str(finding) for finding in load_campaign(tmp_path).findings]
-    assert any(one.startswith("a.yaml: ") and "frequency left out, at which nothing was computed (NaN)" in one for one in said)
+    texts = [str(finding) for finding in load_campaign(tmp_path).findings]
+    assert any(
+        text.startswith("a.yaml: ") and "frequency left out, at which nothing was computed (NaN)" in text for text in texts
+    )
 
 
 def test_a_hull_in_the_sea_bed_is_told(capsys: pytest.CaptureFixture[str]) -> None:

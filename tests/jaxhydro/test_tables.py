@@ -132,11 +132,11 @@ def two_bodies(data: xr.Dataset) -> xr.Dataset:
 
     names = ["added_mass", "radiation_damping", "excitation_force", "hydrostatic_stiffness"]
     data = data[names].drop_vars(["body", "center_of_mass", "rotation_center"], errors="ignore")
-    both = xr.merge([named(data, "buoy", 1.0), named(data, "float", 2.0)], join="outer").fillna(0.0)
+    merged = xr.merge([named(data, "buoy", 1.0), named(data, "float", 2.0)], join="outer").fillna(0.0)
     for name in names[:3]:
-        both[name] = both[name].where(both.omega != 0.02)
+        merged[name] = merged[name].where(merged.omega != 0.02)
     centres = (("body", "space_coordinate"), [[0.0, 0, 0], [10.0, 0, 0]])
-    return both.assign_coords(body=["buoy", "float"], rotation_center=centres, rho=1000.0, g=9.81, water_depth=50.0)
+    return merged.assign_coords(body=["buoy", "float"], rotation_center=centres, rho=1000.0, g=9.81, water_depth=50.0)
 
 
 def test_one_of_several_bodies_is_chosen_by_its_name(tmp_path: Path) -> None:
@@ -285,8 +285,8 @@ def test_members_tell_whether_a_hst_file_has_the_weight(tmp_path: Path) -> None:
     buoyancy = next(load for load in own.loads if isinstance(load, Buoyancy))
     c44 = hydrostatic_stiffness(buoyancy, RHO * G)[3, 3] / (RHO * G)
     hst(tmp_path, {(3, 3): math.pi, (4, 4): c44, (5, 5): c44})
-    said = [remark for remark in model_of(tmp_path, *members, "hydrostatics: {file: hull.hst}").remarks if remark.warning]
-    assert "fits the members with the weight excluded, not included: see `hydrostatics.weight`" in said[0].text
+    warned = [remark for remark in model_of(tmp_path, *members, "hydrostatics: {file: hull.hst}").remarks if remark.warning]
+    assert "fits the members with the weight excluded, not included: see `hydrostatics.weight`" in warned[0].text
     fine = model_of(tmp_path, *members, "hydrostatics: {file: hull.hst, weight: excluded}")
     assert not fine.remarks
     assert_allclose(restoring(fine), restoring(own), rtol=1e-3)
@@ -353,10 +353,10 @@ def test_a_column_that_is_another_is_told(tmp_path: Path, true: str, declared: s
     wamit_files(tmp_path, true)
     table = read_excitation(tmp_path / "hull.3", RHO, G, by=declared)
     hull = LongWaves(RHO * G * AREA, RHO * VOLUME, 50.0, G)
-    said = excitation_column(np.asarray(table.omega), np.asarray(table.force), declared, "hull.3", hull)
-    assert bool(said) == (true != declared)
-    if said:
-        assert "the first column is probably" in said[0] and said[0].endswith(f"See `excitation.by`: {true}")
+    remarks = excitation_column(np.asarray(table.omega), np.asarray(table.force), declared, "hull.3", hull)
+    assert bool(remarks) == (true != declared)
+    if remarks:
+        assert "the first column is probably" in remarks[0] and remarks[0].endswith(f"See `excitation.by`: {true}")
 
 
 def test_a_column_by_frequency_of_deeper_water() -> None:
@@ -367,8 +367,8 @@ def test_a_column_by_frequency_of_deeper_water() -> None:
     force[0], force[2] = 1j * k * RHO * G * VOLUME * np.exp(-k), RHO * G * AREA * np.exp(-k * DRAUGHT)
     as_read = 2 * np.pi / omega
     hull = LongWaves(RHO * G * AREA, RHO * VOLUME, 50.0, G)
-    (said,) = excitation_column(as_read, force, "period", "hull.3", hull)
-    assert said.endswith("See `excitation.by`: rad/s")
+    (remark,) = excitation_column(as_read, force, "period", "hull.3", hull)
+    assert remark.endswith("See `excitation.by`: rad/s")
 
 
 @pytest.mark.slow
@@ -405,9 +405,11 @@ def test_drift_tells_a_period_from_a_frequency(tmp_path: Path) -> None:
     pairs = [(p, q, 0.5 * (a + b)) for p, a in zip(omega, curve) for q, b in zip(omega, curve) if p <= q]
     rows = [[p, q, 0, 0, 1, t, 0, t, 0] for p, q, t in pairs]
     np.savetxt(tmp_path / "hull.12d", rows, fmt="%.9e")
-    for by, said in (("period", "the first column is probably a frequency: `drift.by`: rad/s or Hz"), ("rad/s", "")):
+    for by, expected in (("period", "the first column is probably a frequency: `drift.by`: rad/s or Hz"), ("rad/s", "")):
         model = model_of(tmp_path, f"drift: {{file: hull.12d, by: {by}}}")
-        assert [remark.text.partition(": ")[2].partition(". ")[0] for remark in model.remarks] == ([said] if said else [])
+        assert [remark.text.partition(": ")[2].partition(". ")[0] for remark in model.remarks] == (
+            [expected] if expected else []
+        )
     fine = np.linspace(0.4, 3.2, 15)
     np.savetxt(tmp_path / "hull.3", [[w, 0, 3, 1.0, 0.0, 1.0, 0.0] for w in fine], fmt="%.9e")
     model = model_of(tmp_path, "drift: {file: hull.12d, by: rad/s}", "excitation: {file: hull.3, by: Hz}")
@@ -442,14 +444,14 @@ def test_one_of_several_bodies_of_a_wamit_file_is_chosen_by_its_number(tmp_path:
     second = [" ".join([p, str(int(i) + 6), str(int(j) + 6), str(3 * float(a)), b]) for p, i, j, a, b in moved]
     cross = [" ".join([p, i, str(int(j) + 6), a, b]) for p, i, j, a, b in moved]
     (tmp_path / "hull.1").write_text("\n".join([*lines, *second, *cross]) + "\n", encoding="utf-8")
-    more = [" ".join([p, beta, str(int(i) + 6), *rest]) for p, beta, i, *rest in (line.split() for line in three)]
-    (tmp_path / "hull.3").write_text("\n".join([*three, *more]) + "\n", encoding="utf-8")
+    second_body = [" ".join([p, beta, str(int(i) + 6), *numbers]) for p, beta, i, *numbers in (line.split() for line in three)]
+    (tmp_path / "hull.3").write_text("\n".join([*three, *second_body]) + "\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"motions I and J of one body, 1 to 6, found 7 7. A file of 2 bodies: say which"):
         read_wamit(tmp_path / "hull.1", RHO)
     with pytest.raises(InputError, match=r"a mode from 1 to 6, .* A file of 2 bodies: say which, `body: 1` to `body: 2`"):
         read_excitation(tmp_path / "hull.3", RHO, G)
-    first, other = (read_wamit(tmp_path / "hull.1", RHO, body=body) for body in (1, 2))
-    assert_allclose(other.added_mass, 3 * first.added_mass, rtol=1e-6)
+    first, body_2 = (read_wamit(tmp_path / "hull.1", RHO, body=body) for body in (1, 2))
+    assert_allclose(body_2.added_mass, 3 * first.added_mass, rtol=1e-6)
     assert_allclose(
         read_excitation(tmp_path / "hull.3", RHO, G, body=2).force, read_excitation(tmp_path / "hull.3", RHO, G, body=1).force
     )

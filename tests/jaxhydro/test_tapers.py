@@ -30,7 +30,7 @@ SPAR |= {"rA": [0, 0, -80], "rB": [0, 0, 10]}
 STEP = {**SPAR, "stations": [-80, -8, -8, 10]}
 
 
-def model_of(*members: dict, coefficients: dict | None = None, **more) -> Model:
+def model_of(*members: dict, coefficients: dict | None = None, **keys) -> Model:
     groups = {member.get("group", member["name"]) for member in members}
     data = {
         "name": "taper",
@@ -39,14 +39,14 @@ def model_of(*members: dict, coefficients: dict | None = None, **more) -> Model:
         "members": list(members),
         "coefficients": {group: coefficients or {} for group in groups},
         "mooring": {"kind": "none"},
-        **more,
+        **keys,
     }
     return built(validate(Platform, copy.deepcopy(data), "taper"))
 
 
 @eqx.filter_jit
 def wave_force(model: Model, sea, time) -> jnp.ndarray:
-    at, still = (model.instant(time, model.rest(), one) for one in (sea, jh.StillWater()))
+    at, still = (model.instant(time, model.rest(), sea_met) for sea_met in (sea, jh.StillWater()))
     return model.sum_of_loads(at, model.rest().memory).force - model.sum_of_loads(still, model.rest().memory).force
 
 
@@ -85,10 +85,10 @@ def test_heave_force_on_a_cone_and_on_a_step(period: float, elements: int | None
         {**SPAR, "name": "top", "group": "hull", "stations": [0, 1], "d": [6, 6], "rA": [0, 0, -8]},
     ]
     near = {**SPAR, "stations": [-80, -8.001, -8, 10]}
-    more = {"maccamy_fuchs": False} | ({} if elements is None else {"elements": elements})
+    keys = {"maccamy_fuchs": False} | ({} if elements is None else {"elements": elements})
     for members, expected in (([SPAR], cone), ([STEP], step), ([near], step), (two, step)):
-        found = amplitude(model_of(*({**member, **more} for member in members)), period)
-        assert found[2] == pytest.approx(closed_form(expected, period), rel=3e-4)
+        force = amplitude(model_of(*({**member, **keys} for member in members)), period)
+        assert force[2] == pytest.approx(closed_form(expected, period), rel=3e-4)
 
 
 def surface_pressure(member: dict, phi, count: int = 800) -> np.ndarray:
@@ -98,11 +98,11 @@ def surface_pressure(member: dict, phi, count: int = 800) -> np.ndarray:
     axis = (b - a) / length
     across = np.cross(axis, [0.0, 1.0, 0.0])
     across /= np.linalg.norm(across)
-    other = np.cross(axis, across)
+    third = np.cross(axis, across)
     low, high = (0.5 * d for d in member["d"])
     slope = (high - low) / length
     angle = 2 * math.pi * (np.arange(48) + 0.5) / 48
-    ring = np.cos(angle)[:, None] * across + np.sin(angle)[:, None] * other
+    ring = np.cos(angle)[:, None] * across + np.sin(angle)[:, None] * third
     total = np.zeros(6)
 
     def add(point: np.ndarray, normal: np.ndarray) -> None:  # normal times area
@@ -154,9 +154,9 @@ def test_pressure_on_an_inclined_taper(shape: dict, order: int) -> None:
     sea = jh.WaveSea(PlaneWaves.free(two, WATER), WATER, bound=bound)
     for time in (0.0, 2.0):
         expected = surface_pressure(member, partial(pressure_of, sea, time))
-        found = excitation(model, sea, time)
-        assert_allclose(found[:3], expected[:3], atol=4e-3 * np.linalg.norm(expected[:3]))
-        assert_allclose(found[3:], expected[3:], atol=4e-3 * np.linalg.norm(expected[3:]))
+        acting_force = excitation(model, sea, time)
+        assert_allclose(acting_force[:3], expected[:3], atol=4e-3 * np.linalg.norm(expected[:3]))
+        assert_allclose(acting_force[3:], expected[3:], atol=4e-3 * np.linalg.norm(expected[3:]))
 
 
 def test_heave_of_a_cone_spar_as_capytaine_has_it() -> None:
@@ -170,8 +170,8 @@ def test_heave_of_a_cone_spar_as_capytaine_has_it() -> None:
     for period, whole, pressure in ((16.0, 237914.1, 218738.0), (20.0, 127485.4, 110421.5)):
         bare = amplitude(model_of({**SPAR, "maccamy_fuchs": False}), period)[2]
         assert bare == pytest.approx(pressure, rel=5e-3)
-        found = amplitude(model_of(SPAR, coefficients={"Ca_z": 0.7}), period)[2]
-        assert found == pytest.approx(whole, rel=0.04)
+        heave = amplitude(model_of(SPAR, coefficients={"Ca_z": 0.7}), period)[2]
+        assert heave == pytest.approx(whole, rel=0.04)
 
 
 def test_ring_of_a_heave_plate() -> None:
@@ -207,9 +207,9 @@ def test_a_column_in_two_members_is_one_column() -> None:
         {**whole, "name": "low", "group": "hull", "rB": [0, 0, -30]},
         {**whole, "name": "up", "group": "hull", "rA": [0, 0, -30]},
     ]
-    one, two = (model_of(*members, coefficients={"Ca_z": 0.6, "Cd_z": 1.5}) for members in ([whole], halves))
-    assert float(two.hull.ends.volume.sum()) == pytest.approx(float(one.hull.ends.volume.sum()), rel=1e-12)
-    assert float(two.hull.ends.facing.sum()) == pytest.approx(float(one.hull.ends.facing.sum()), rel=1e-12)
+    whole_column, two = (model_of(*members, coefficients={"Ca_z": 0.6, "Cd_z": 1.5}) for members in ([whole], halves))
+    assert float(two.hull.ends.volume.sum()) == pytest.approx(float(whole_column.hull.ends.volume.sum()), rel=1e-12)
+    assert float(two.hull.ends.facing.sum()) == pytest.approx(float(whole_column.hull.ends.facing.sum()), rel=1e-12)
 
 
 def wet_volume(member: dict, position: np.ndarray, n: int = 90) -> np.ndarray:
@@ -236,20 +236,20 @@ def test_buoyancy_of_a_frustum_is_exact() -> None:
     """pi h/12 (D^2 + D d + d^2) and its centroid, upright and leaning, under water; up to the waterline where it is cut."""
     cone = {**SPAR, "stations": [0, 1], "d": [12, 6], "rA": [3, 0, -50], "rB": [3, 0, -20]}
     load = next(load for load in model_of(cone).loads if isinstance(load, Buoyancy))
-    found = load.upright(RHO * G)
+    statics = load.upright(RHO * G)
     volume = math.pi * 30 / 12 * (144 + 72 + 36)
     first = math.pi / 4 * 30**2 * (144 / 2 - 2 * 12 * 6 / 3 + 36 / 4)  # int s (12 - 6 s/30)^2 ds
-    assert found["displaced_volume"] == pytest.approx(volume, rel=1e-13)
-    assert found["centre_of_buoyancy"] == pytest.approx(-50 + first / volume, rel=1e-12)
+    assert statics["displaced_volume"] == pytest.approx(volume, rel=1e-13)
+    assert statics["centre_of_buoyancy"] == pytest.approx(-50 + first / volume, rel=1e-12)
     cut = {**cone, "rB": [3, 0, 10]}
     load = next(load for load in model_of(cut).loads if isinstance(load, Buoyancy))
-    found, wide = load.upright(RHO * G), 12 - 6 * 50 / 60
+    statics, wide = load.upright(RHO * G), 12 - 6 * 50 / 60
     volume = math.pi * 50 / 12 * (144 + 12 * wide + wide**2)
-    assert found["displaced_volume"] == pytest.approx(volume, rel=1e-13)
-    assert found["C33"] == pytest.approx(RHO * G * disc(wide), rel=1e-12)
+    assert statics["displaced_volume"] == pytest.approx(volume, rel=1e-13)
+    assert statics["C33"] == pytest.approx(RHO * G * disc(wide), rel=1e-12)
     second = RHO * G * math.pi / 64 * wide**4
-    assert found["C44"] == pytest.approx(second + RHO * G * volume * found["centre_of_buoyancy"], rel=1e-9)
-    assert found["C55"] == pytest.approx(found["C44"] + RHO * G * disc(wide) * 9, rel=1e-9)
+    assert statics["C44"] == pytest.approx(second + RHO * G * volume * statics["centre_of_buoyancy"], rel=1e-9)
+    assert statics["C55"] == pytest.approx(statics["C44"] + RHO * G * disc(wide) * 9, rel=1e-9)
 
 
 def test_buoyancy_of_a_cut_frustum_that_leans() -> None:

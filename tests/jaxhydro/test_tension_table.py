@@ -86,8 +86,8 @@ def test_a_straight_table_is_a_spring(interpolation: str) -> None:
 
         return np.asarray(jax.jit(jax.vmap(at))(offsets))
 
-    ours, theirs = pulls(rope), pulls(spring)
-    assert ours == pytest.approx(theirs, rel=1e-12, abs=1e-12 * np.abs(theirs).max())
+    ours, spring_pulls = pulls(rope), pulls(spring)
+    assert ours == pytest.approx(spring_pulls, rel=1e-12, abs=1e-12 * np.abs(spring_pulls).max())
     assert (ours == 0).sum() > 0
 
 
@@ -123,7 +123,7 @@ def test_statics_see_the_ropes() -> None:
     """Surge stiffness of three ropes (Faltinsen 1990, chapter 8): 3/2 (k cos^2 + T/l (1 - cos^2) + T/l)."""
     model = buoy()
     states = line_states(model, jnp.zeros(6))
-    assert [one.tension for one in states] == pytest.approx([497051.7] * 3, abs=1.0)
+    assert [state.tension for state in states] == pytest.approx([497051.7] * 3, abs=1.0)
     assert states[0].strain == pytest.approx(0.0174263, abs=1e-7)
     assert states[0].angle == pytest.approx(np.arctan(90.0 / 480.0), rel=1e-9)
     length, tension, stiffness = np.hypot(480.0, 90.0), states[0].tension, 4e7 / LENGTH
@@ -144,11 +144,11 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("rope", "said"), MISTAKES)
-def test_mistakes_are_told(rope: dict[str, Any], said: str) -> None:
+@pytest.mark.parametrize(("rope", "expected"), MISTAKES)
+def test_mistakes_are_told(rope: dict[str, Any], expected: str) -> None:
     with pytest.raises(InputError) as error:
         validate(Platform, changed(**rope), "buoy")
-    assert f"mooring.ropes.{'polyester.' * (not said.startswith('polyester'))}{said}" in str(error.value)
+    assert f"mooring.ropes.{'polyester.' * (not expected.startswith('polyester'))}{expected}" in str(error.value)
 
 
 def test_unknown_ropes_are_told() -> None:
@@ -161,7 +161,7 @@ def test_unknown_ropes_are_told() -> None:
 def test_slack_ropes_and_short_tables_are_told() -> None:
     slack, short = copy.deepcopy(DATA), changed(strain=[0.0, 0.005, 0.01])
     slack["mooring"]["lines"][0] |= {"unstretched_length": 500.0, "heading": [0]}
-    (told,) = (one.text for one in model(slack).remarks)
-    assert "rope 1: 488.4 m to its anchor, 500 m unstretched" in told
-    (told,) = (one.text for one in model(short).remarks)
-    assert "rope 3: 0.01743, and 0.01 at the table's end" in told
+    (text,) = (remark.text for remark in model(slack).remarks)
+    assert "rope 1: 488.4 m to its anchor, 500 m unstretched" in text
+    (text,) = (remark.text for remark in model(short).remarks)
+    assert "rope 3: 0.01743, and 0.01 at the table's end" in text

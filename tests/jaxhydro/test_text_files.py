@@ -85,19 +85,19 @@ def test_sentences_after_the_last_row(tmp_path, delimiter, bottom):
 
 
 @pytest.mark.parametrize(
-    ("top", "told"),
+    ("top", "expected"),
     [
         (["Time Surge"], "header: expected 3 names, one for each column, found 2: Time, Surge"),
         (["Time Surge Pitch Roll"], "header: expected 3 names, one for each column, found 4: Time, Surge, Pitch, Roll"),
     ],
 )
-def test_a_header_that_does_not_fit(tmp_path, top, told):
-    assert told in refused(tmp_path, top + rows("  "))
+def test_a_header_that_does_not_fit(tmp_path, top, expected):
+    assert expected in refused(tmp_path, top + rows("  "))
 
 
 def test_decimal_commas_between_commas_are_guessed(tmp_path):
-    told = refused(tmp_path, ["Time,Surge", "0,0,1,5", "0,1,1,4", "0,2,1,3"])
-    assert "expected 4 names, one for each column, found 2: Time, Surge. If numbers have decimal commas" in told
+    message = refused(tmp_path, ["Time,Surge", "0,0,1,5", "0,1,1,4", "0,2,1,3"])
+    assert "expected 4 names, one for each column, found 2: Time, Surge. If numbers have decimal commas" in message
 
 
 @pytest.mark.parametrize("delimiter", DELIMITERS, ids=["comma", "semicolon", "tab", "spaces"])
@@ -170,7 +170,7 @@ def test_a_date_and_a_time_of_day_between_spaces(tmp_path, header):
 
 
 @pytest.mark.parametrize(
-    ("times", "told"),
+    ("times", "expected"),
     [
         (stamps("{0:%d/%m/%Y %H:%M:%S}", start=datetime.datetime(2024, 1, 31, 23, 59, 50)), "in the order year-month-day"),
         ([f"10:{i:02d}" for i in range(COUNT)], "hours, minutes and seconds"),
@@ -186,8 +186,8 @@ def test_a_date_and_a_time_of_day_between_spaces(tmp_path, header):
         ),
     ],
 )
-def test_times_that_may_mean_something_else(tmp_path, times, told):
-    assert told in refused(tmp_path, ["t,x", *(f"{time},{i}" for i, time in enumerate(times))], "a.csv")
+def test_times_that_may_mean_something_else(tmp_path, times, expected):
+    assert expected in refused(tmp_path, ["t,x", *(f"{time},{i}" for i, time in enumerate(times))], "a.csv")
 
 
 def campaign(folder, name, unit="s"):

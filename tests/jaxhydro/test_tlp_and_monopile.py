@@ -29,10 +29,10 @@ def tlp() -> Model:
 
 def test_tendons_are_the_published_ones(tlp: Model, recwarn: pytest.WarningsRecorder) -> None:
     """Weight of the tendons in water, which the published pull has, too, makes up 2 % of it."""
-    assert not [one.text for one in tlp.remarks if one.warning]  # taut vertical tendons are not slack
-    found = np.asarray(mooring_stiffness(tlp, jnp.zeros(6)))
+    assert not [remark.text for remark in tlp.remarks if remark.warning]  # taut vertical tendons are not slack
+    stiffness = np.asarray(mooring_stiffness(tlp, jnp.zeros(6)))
     for key, value in TENDONS.items():
-        assert found[int(key[1]) - 1, int(key[2]) - 1] == pytest.approx(value, rel=0.005), key
+        assert stiffness[int(key[1]) - 1, int(key[2]) - 1] == pytest.approx(value, rel=0.005), key
     mooring = load_platform("mit-nrel-tlp").mooring
     tension = 1.5e9 * (152.11 / 151.73 - 1.0) + 0.5 * 151.73 * (116.027 - 1025 * np.pi / 4 * 0.127**2) * 9.80665
     assert mooring.kind == "catenary" and -8 * tension == pytest.approx(PULL, rel=0.002)
@@ -95,9 +95,9 @@ def beam(z: np.ndarray, stiffer_above: float = 1.0, water: float = 1025.0) -> tu
 def first_frequency(z: np.ndarray, stiffer_above: float = 1.0, clamped: bool = False) -> float:
     """First natural frequency (Hz)."""
     stiffness, mass = beam(z, stiffer_above, 0.0 if clamped else 1025.0)
-    kept = slice(2 if clamped else 0, None)
-    massive = mass[kept, kept] + 1e-6 * np.eye(len(mass[kept, kept]))  # kg, kg m2: the embedded pile has no mass here
-    return float(np.sqrt(eigh(stiffness[kept, kept], massive, eigvals_only=True)[0]) / (2 * np.pi))
+    free = slice(2 if clamped else 0, None)
+    massive = mass[free, free] + 1e-6 * np.eye(len(mass[free, free]))  # kg, kg m2: the embedded pile has no mass here
+    return float(np.sqrt(eigh(stiffness[free, free], massive, eigvals_only=True)[0]) / (2 * np.pi))
 
 
 def test_springs_of_the_monopile_are_the_condensed_soil_springs() -> None:
@@ -109,9 +109,9 @@ def test_springs_of_the_monopile_are_the_condensed_soil_springs() -> None:
     expected = to_reference.T @ head @ to_reference
     mooring = load_platform("oc3-monopile").mooring
     assert mooring.kind == "stiffness_matrix"
-    found = mooring.matrix()
-    assert found[np.ix_([0, 4], [0, 4])] == pytest.approx(expected, rel=1e-3)
-    assert found[np.ix_([1, 3], [1, 3])] == pytest.approx(expected * [[1, -1], [-1, 1]], rel=1e-3)
+    matrix = mooring.matrix()
+    assert matrix[np.ix_([0, 4], [0, 4])] == pytest.approx(expected, rel=1e-3)
+    assert matrix[np.ix_([1, 3], [1, 3])] == pytest.approx(expected * [[1, -1], [-1, 1]], rel=1e-3)
 
 
 NODES = np.concatenate([np.linspace(FOOT, HEAD, 37)[:-1], np.linspace(HEAD, TOP, 55)])

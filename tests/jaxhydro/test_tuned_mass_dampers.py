@@ -47,12 +47,12 @@ def test_energy_is_conserved_without_a_damper() -> None:
 
     def energy(up: jax.Array, height: jax.Array, motion: jax.Array, state: jax.Array) -> jax.Array:
         displaced, speed = state
-        place = point + displaced * line
-        carried = motion[:3] + jnp.cross(motion[3:], place)
+        position = point + displaced * line
+        carried = motion[:3] + jnp.cross(motion[3:], position)
         velocity_of_mass = carried + (speed - line @ carried) * line
         kinetic = 0.5 * velocity_of_mass @ velocity_of_mass
         spring = 0.5 * frequency**2 * displaced**2 - GRAVITY * line[2] * displaced
-        return MASS * (kinetic + spring + GRAVITY * (height + up @ place))
+        return MASS * (kinetic + spring + GRAVITY * (height + up @ position))
 
     @jax.jit
     def powers(
@@ -87,11 +87,11 @@ def test_frequencies_of_den_hartog() -> None:
         pushed = (action.body_force[0] - stiffness * at) / (hull + action.added_mass[0, 0])
         return jnp.concatenate([jnp.stack([speed, pushed]), action.memory_rate[:, 0]])
 
-    found = np.sort(np.abs(np.linalg.eigvals(np.asarray(jax.jit(jax.jacfwd(rates))(jnp.zeros(4)))).imag))[::2]
+    frequencies = np.sort(np.abs(np.linalg.eigvals(np.asarray(jax.jit(jax.jacfwd(rates))(jnp.zeros(4)))).imag))[::2]
     own, ratio = np.sqrt(stiffness / hull), MASS / hull
     tuning = 2 * np.pi / PERIOD / own
     expected = own * np.sqrt(np.sort(np.roots([1.0, -(1 + tuning**2 * (1 + ratio)), tuning**2])))
-    assert found == pytest.approx(expected, rel=1e-9)
+    assert frequencies == pytest.approx(expected, rel=1e-9)
 
 
 def test_it_hangs_with_its_weight_where_it_rests() -> None:
@@ -111,9 +111,9 @@ def test_hull_periods_are_those_with_the_damper_held() -> None:
     mass = {"name": "mass", "mass": MASS, "centre_of_mass": point, "inertia": {"Ixx": 1e-3, "Iyy": 1e-3, "Izz": 1e-3}}
     held["rigid_body"] = {"parts": [body, mass]}
     damped, rigid = (build(validate(Platform, data, "damped")) for data in (DATA, held))
-    ours, theirs = (jh.natural_modes(one, jnp.zeros(6)).period for one in (damped, rigid))
-    assert ours == pytest.approx(theirs, rel=1e-6)
-    assert any("tower" in one.text and "8 s" in one.text and not one.warning for one in damped.remarks)
+    ours, rigid_periods = (jh.natural_modes(variant, jnp.zeros(6)).period for variant in (damped, rigid))
+    assert ours == pytest.approx(rigid_periods, rel=1e-6)
+    assert any("tower" in remark.text and "8 s" in remark.text and not remark.warning for remark in damped.remarks)
 
 
 MISTAKES: list[tuple[dict[str, Any], str]] = [
@@ -124,17 +124,17 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("key", "said"), MISTAKES)
-def test_mistakes_are_told(key: dict[str, Any], said: str) -> None:
+@pytest.mark.parametrize(("key", "expected"), MISTAKES)
+def test_mistakes_are_told(key: dict[str, Any], expected: str) -> None:
     with pytest.raises(InputError) as error:
         validate(Platform, DATA | {"tuned_mass_dampers": [TUNED | key]}, "damped")
-    assert said in str(error.value)
+    assert expected in str(error.value)
 
 
 def test_stiffness_and_damping_are_other_words_for_period_and_ratio() -> None:
     frequency = 2 * np.pi / PERIOD
-    other = DAMPER | {"stiffness": MASS * frequency**2, "damping": 0.2 * MASS * frequency}
-    platform = validate(Platform, DATA | {"tuned_mass_dampers": [other]}, "damped")
+    by_stiffness = DAMPER | {"stiffness": MASS * frequency**2, "damping": 0.2 * MASS * frequency}
+    platform = validate(Platform, DATA | {"tuned_mass_dampers": [by_stiffness]}, "damped")
     assert platform.tuned_mass_dampers[0].tuning() == pytest.approx((PERIOD, 0.1), rel=1e-12)
     twice = DATA | {"tuned_mass_dampers": [TUNED, TUNED]}
     with pytest.raises(InputError, match=r"tuned_mass_dampers\[1\]\.name: expected a name of its own, found 'tower' again"):

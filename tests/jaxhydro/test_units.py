@@ -29,8 +29,8 @@ from jaxhydro.water import WATER_EFFECTS
     ],
 )
 def test_a_unit_is_a_factor_and_powers(text, factor, powers):
-    found = parse_unit(text)
-    assert found.factor == pytest.approx(factor) and found.powers == powers
+    unit = parse_unit(text)
+    assert unit.factor == pytest.approx(factor) and unit.powers == powers
 
 
 @pytest.mark.parametrize("text", ["", "kM", "m/", "/m", "m//s", "m2.5", "%", "N m)x"])
@@ -51,10 +51,10 @@ def test_units_of_all_effects_can_be_read():
     seen = 0
     for effect in {**LOADS, **WATER_EFFECTS, **SENSOR_EFFECTS}.values():
         try:
-            one = effect.neutral(getattr(effect, "allowed", ("surge", "pitch"))) if hasattr(effect, "neutral") else effect()
+            load = effect.neutral(getattr(effect, "allowed", ("surge", "pitch"))) if hasattr(effect, "neutral") else effect()
         except (TypeError, ValueError):  # made of a body, of tables, of groups of members
             continue
-        for label in one.values:
-            parse_unit(one.about(label).unit)
+        for label in load.values:
+            parse_unit(load.about(label).unit)
             seen += 1
     assert seen > 30

@@ -142,14 +142,14 @@ def test_a_delay_is_late() -> None:
 
 def test_a_gauge_further_along_by_hand() -> None:
     """It recorded a cos(omega t), was said to be at x = 12 m and stood at 12 + 30 m: there the sea is a cos(omega t)."""
-    said = jh.regular_wave(2.0, 8.0, WATER)
-    k = float(np.asarray(said.waves.vector)[0, 0])
-    said = jh.regular_wave(2.0, 8.0, WATER, phase=k * 12.0)
+    stated = jh.regular_wave(2.0, 8.0, WATER)
+    k = float(np.asarray(stated.waves.vector)[0, 0])
+    stated = jh.regular_wave(2.0, 8.0, WATER, phase=k * 12.0)
     t = 3.3
     recorded = math.cos(2 * math.pi / 8.0 * 3.3)
-    assert float(elevation(said, t, np.array([[12.0], [0.0]]))[0]) == pytest.approx(recorded, abs=1e-12)
+    assert float(elevation(stated, t, np.array([[12.0], [0.0]]))[0]) == pytest.approx(recorded, abs=1e-12)
     load = with_values(WaveGaugePosition(), distance=30.0)
-    assert float(elevation(through(load, said), t, np.array([[42.0], [5.0]]))[0]) == pytest.approx(recorded, abs=1e-12)
+    assert float(elevation(through(load, stated), t, np.array([[42.0], [5.0]]))[0]) == pytest.approx(recorded, abs=1e-12)
 
 
 @pytest.mark.parametrize("order, heading", [(1, 0.0), (2, 0.6)])
@@ -169,8 +169,8 @@ def test_a_moved_sea_is_one_of_other_phases(order: int, heading: float) -> None:
     *exact, slow = water(expected, time, points)
     for unmoved, tolerance in ((prepared, 1e-5), (sea.direct(), 1e-12)):
         *actual, drifting = water(unmoved, time, points, load)
-        for part, other in zip(actual, exact, strict=True):
-            assert_allclose(part, other, atol=5 * tolerance * np.abs(other).max())
+        for part, exact_part in zip(actual, exact, strict=True):
+            assert_allclose(part, exact_part, atol=5 * tolerance * np.abs(exact_part).max())
         assert unmoved is prepared or np.abs(np.asarray(drifting) - np.asarray(slow)).max() < 1e-9
     same = zip(*(jax.tree.leaves(which) for which in (through(WaveGaugePosition(), prepared), prepared)), strict=True)
     assert all(np.array_equal(a, b) for a, b in same)
@@ -310,8 +310,8 @@ def test_a_prepared_sea_comes_back() -> None:
     load = with_values(WaveReflection(delay=8.1), coefficient=0.25)
     points = jnp.array([[-9.0, 21.0], [4.0, 7.0], [-12.0, -1.0]])
     met, exact = load.through(prepared), load.through(sea.direct())
-    for part, other in zip(*(water(which, jnp.asarray(40.5), points) for which in (met, exact)), strict=True):
-        assert_allclose(part, other, atol=2e-5 * np.abs(other).max())
+    for part, exact_part in zip(*(water(which, jnp.asarray(40.5), points) for which in (met, exact)), strict=True):
+        assert_allclose(part, exact_part, atol=2e-5 * np.abs(exact_part).max())
     for time, reflected in ((17.75, met), (10.125, met), (40.5, WaveReflection(delay=8.1).through(prepared))):
         actual, expected = (water(which, jnp.asarray(time), points) for which in (reflected, prepared))
         assert_allclose(actual[0], expected[0], rtol=1e-13)
@@ -323,9 +323,9 @@ def test_what_the_gauge_saw_come_back() -> None:
     r^2 leaves of sent and sent back."""
     sea = irregular(1, 0.3).direct()
     met = through(with_values(WaveReflection(delay=8.1), coefficient=0.25, seen=1.0), sea)
-    time, here, along = 40.5, np.array([[0.0], [0.0], [-4.0]]), np.asarray(one_program(lambda sea: sea.direction())(sea))
-    assert_allclose(elevation(met, time, here[:2]), elevation(sea, time, here[:2]), atol=1e-12)
-    back, now, then = flow(met, time, here), flow(sea, time, here), flow(sea, time - 8.1, here)
+    time, origin, along = 40.5, np.array([[0.0], [0.0], [-4.0]]), np.asarray(one_program(lambda sea: sea.direction())(sea))
+    assert_allclose(elevation(met, time, origin[:2]), elevation(sea, time, origin[:2]), atol=1e-12)
+    back, now, then = flow(met, time, origin), flow(sea, time, origin), flow(sea, time - 8.1, origin)
     assert_allclose(back.pressure, now.pressure, rtol=1e-12)
     velocity, sent, returned = (along @ np.asarray(water_flow.velocity)[:2] for water_flow in (back, now, then))
     assert_allclose(velocity, sent - 0.5 * returned, rtol=1e-9)
@@ -341,8 +341,8 @@ def test_slopes_of_a_prepared_sea_that_comes_back() -> None:
     labels = (*(f"wave_reflection.{name}" for name in ("coefficient", "delay", "seen")), "wave_gauge_position.distance")
 
     def met(which, x):  # unchecked: no share is negative, but its derivative at zero has two sides
-        here = model.at_values(dict(zip(labels, x))).through(which)
-        return jnp.concatenate([jnp.ravel(column) for column in water(here, jnp.asarray(40.5), points)[:4]])
+        changed = model.at_values(dict(zip(labels, x))).through(which)
+        return jnp.concatenate([jnp.ravel(column) for column in water(changed, jnp.asarray(40.5), points)[:4]])
 
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,), 3))
     of_prepared, of_direct = partial(met, prepared), partial(met, sea.direct())
@@ -353,8 +353,8 @@ def test_slopes_of_a_prepared_sea_that_comes_back() -> None:
         actual, exact = np.asarray(forward(x)), np.asarray(direct(x))
         apart = [np.asarray(value(x + e)) - np.asarray(value(x - e)) for e in 1e-5 * np.eye(4)]
         assert_allclose(actual, np.stack(apart, axis=1) / 2e-5, atol=1e-6 * np.abs(actual).max())
-        for column, other in zip(actual.T, exact.T, strict=True):
-            assert_allclose(column, other, atol=2e-4 * max(np.abs(other).max(), 1e-3))
+        for column, expected in zip(actual.T, exact.T, strict=True):
+            assert_allclose(column, expected, atol=2e-4 * max(np.abs(expected).max(), 1e-3))
         assert_allclose(reverse(x), actual, atol=1e-10)
 
 

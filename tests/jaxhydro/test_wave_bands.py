@@ -66,8 +66,8 @@ def test_two_seas_share_a_band() -> None:
     """From the slowest to the fastest: a swell with a sea on it, and one record of each."""
     swell, wind = of_records([sea(0.02)], 0.1), of_records([sea(3.0)], 0.05)
     assert of_records([sea(0.02), sea(3.0)], 0.05) == (swell[0], wind[1])
-    (x, step), (y, other) = sea(0.2, height=0.4), sea(0.8, 20.0, 1600, height=1.0)
-    y = np.interp(np.arange(len(x)) * step, np.arange(len(y)) * other, y)
+    (x, step), (y, other_step) = sea(0.2, height=0.4), sea(0.8, 20.0, 1600, height=1.0)
+    y = np.interp(np.arange(len(x)) * step, np.arange(len(y)) * other_step, y)
     low, _ = of_records([(x + y, step)], 0.5)
     assert low < 0.2  # 14 % of the energy are the swell's
 
@@ -124,8 +124,8 @@ def test_simulate_and_calibrate_have_one_rule() -> None:
     time = step * np.arange(len(x))
     record = SimpleNamespace(kind="irregular", use="fit", time=time, wave=x)
     manifest = SimpleNamespace(wave_band=None, scale=1.0)
-    found = asked(hs=None, tp=None, record=Record("f", "c", time, x, (0.0, 0.0))).band(0.1)
-    assert found == wave_band(manifest, SimpleNamespace(pace=0.1), [record]) != (LOW, CUTOFF)
+    band = asked(hs=None, tp=None, record=Record("f", "c", time, x, (0.0, 0.0))).band(0.1)
+    assert band == wave_band(manifest, SimpleNamespace(pace=0.1), [record]) != (LOW, CUTOFF)
 
 
 def test_a_sweep_says_its_own_band() -> None:

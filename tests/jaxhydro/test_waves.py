@@ -27,8 +27,8 @@ def wave(environment=WATER, period=10.0, height=4.0, **options) -> WaveSea:
 
 @jax.jit
 def at_point(sea: WaveSea, time, point):
-    found = sea.flow(time, point[:, None])
-    return found.velocity[:, 0], found.acceleration[:, 0], found.pressure[0]
+    kinematics = sea.flow(time, point[:, None])
+    return kinematics.velocity[:, 0], kinematics.acceleration[:, 0], kinematics.pressure[0]
 
 
 def flow(sea: WaveSea, time, point) -> tuple[np.ndarray, ...]:
@@ -49,8 +49,8 @@ FORWARD, REVERSE = one_program(jax.jacfwd(wavenumber, (0, 1, 2))), one_program(j
 def test_dispersion_against_root_finding(depth: float) -> None:
     """omega^2 = g k tanh kh by scipy's brentq, from swell of an hour to capillary-sized ripples."""
     omega = np.geomspace(2 * np.pi / 3600, 30.0, 60)
-    found = number(omega, depth, 9.81)
-    for w, k in zip(omega, np.asarray(found), strict=True):
+    wavenumbers = number(omega, depth, 9.81)
+    for w, k in zip(omega, np.asarray(wavenumbers), strict=True):
         lower, upper = w**2 / 9.81, max(w**2 / 9.81, w / math.sqrt(9.81 * depth)) * 1.5
         exact = brentq(lambda k, w=w: 9.81 * k * math.tanh(k * depth) - w**2, 0.99 * lower, upper, xtol=1e-300, rtol=1e-15)
         assert k == pytest.approx(exact, rel=1e-13)
@@ -132,8 +132,8 @@ def test_above_still_water_the_flow_is_that_of_the_surface() -> None:
     """The docstring's rule; below the bottom nothing blows up either."""
     sea = wave()
     for a, b in ((0.0, 3.0), (-200.0, -230.0)):
-        for one, other in zip(flow(sea, 1.0, np.array([2.0, 0, a])), flow(sea, 1.0, np.array([2.0, 0, b])), strict=True):
-            assert_allclose(one, other, rtol=1e-14)
+        for upper, lower in zip(flow(sea, 1.0, np.array([2.0, 0, a])), flow(sea, 1.0, np.array([2.0, 0, b])), strict=True):
+            assert_allclose(upper, lower, rtol=1e-14)
 
 
 def test_nothing_overflows_in_deep_water() -> None:
@@ -164,8 +164,8 @@ def test_waves_grow_from_rest() -> None:
 def test_components_add_up() -> None:
     """Linear waves superpose: two components together are the sum of each alone."""
     first, second = wave(phase=0.3), wave(period=7.0, height=2.0, heading=1.0)
-    both = WaveSea(first.waves + second.waves, WATER)
-    for a, b, total in zip(*(flow(sea, 2.0, POINTS[1]) for sea in (first, second, both)), strict=True):
+    superposed = WaveSea(first.waves + second.waves, WATER)
+    for a, b, total in zip(*(flow(sea, 2.0, POINTS[1]) for sea in (first, second, superposed)), strict=True):
         assert_allclose(a + b, total, rtol=1e-12, atol=1e-14)
 
 
@@ -237,10 +237,10 @@ def test_diffraction_by_a_fixed_column() -> None:
     and later; "ramp" adds (Ca - 1) exp(-(ka / 0.3)^2), and without its lag it is the modulus."""
     period = 6.0
     omega = 2 * math.pi / period
-    found = {}
+    forces = {}
     for name in ("maccamy_fuchs", "ramp", "none"):
         model = only(jh.build(platform(diffraction=name)), StripInertia)
-        found[name] = np.array([force_at_rest(model, wave(period=period, phase=p))[0] for p in (0.0, math.pi / 2)])
+        forces[name] = np.array([force_at_rest(model, wave(period=period, phase=p))[0] for p in (0.0, math.pi / 2)])
     sea = wave(period=period)
     k = float(np.linalg.norm(sea.waves.vector))
     ka = 5 * k
@@ -249,7 +249,7 @@ def test_diffraction_by_a_fixed_column() -> None:
     size = 1025 * math.pi / 4 * 100 * 2.0 * omega**2 * integral
     for name, coefficient in (("maccamy_fuchs", factor), ("ramp", factor - 0.1 * math.exp(-((ka / 0.3) ** 2))), ("none", 1.9)):
         expected = [(size * coefficient * 1j * np.exp(1j * phase)).real for phase in (0.0, math.pi / 2)]
-        assert_allclose(found[name], expected, rtol=1e-9, err_msg=name)
+        assert_allclose(forces[name], expected, rtol=1e-9, err_msg=name)
     modulus = only(jh.build(platform()), StripInertia).with_conventions(lag=False)
     assert_allclose(force_at_rest(modulus, wave(period=period, phase=math.pi / 2))[0], -size * abs(factor), rtol=1e-9)
 
@@ -271,8 +271,8 @@ def test_diffraction_by_a_leaning_column() -> None:
 
     integral = complex(*(quad(lambda z, part=part: getattr(across(z), part), -20, 0)[0] for part in ("real", "imag")))
     size = (1025 * math.pi / 4 * 100 * factor * integral).real
-    found = force_at_rest(model, sea, angle)
-    assert_allclose(found[:3], [size * math.cos(angle), 0.0, -size * math.sin(angle)], rtol=1e-7, atol=1e-3)
+    acting_force = force_at_rest(model, sea, angle)
+    assert_allclose(acting_force[:3], [size * math.cos(angle), 0.0, -size * math.sin(angle)], rtol=1e-7, atol=1e-3)
 
 
 def test_end_of_a_fixed_column() -> None:

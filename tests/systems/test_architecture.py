@@ -66,29 +66,29 @@ ARRAYS = {"jax", "jaxtyping", "equinox", "diffrax", "optimistix", "lineax", "num
 @cache
 def modules() -> dict[str, ast.Module]:
     """Every module of the two packages, by name, as a syntax tree."""
-    found = {}
+    trees = {}
     for package in ("jaxhydro", "calibration"):
         for path in (ROOT / package).rglob("*.py"):
             name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
-            found[name] = ast.parse(path.read_text(encoding="utf-8"))
-    return found
+            trees[name] = ast.parse(path.read_text(encoding="utf-8"))
+    return trees
 
 
 @cache
 def imports(name: str) -> tuple[tuple[str, str], ...]:
     """(module, name in it or "") of all imports of a module, those inside functions too, but those for annotations alone."""
     blocks = [node for node in ast.walk(modules()[name]) if isinstance(node, ast.If)]
-    annotations = {id(one) for node in blocks if ast.unparse(node.test) == "TYPE_CHECKING" for one in ast.walk(node)}
-    found = []
+    annotations = {id(part) for node in blocks if ast.unparse(node.test) == "TYPE_CHECKING" for part in ast.walk(node)}
+    imported = []
     for node in (node for node in ast.walk(modules()[name]) if id(node) not in annotations):
         if isinstance(node, ast.Import):
-            found += [(alias.name, "") for alias in node.names]
+            imported += [(alias.name, "") for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{name}: imports are absolute"
             for alias in node.names:
                 whole = f"{node.module}.{alias.name}"
-                found.append((whole, "") if whole in modules() else (node.module or "", alias.name))
-    return tuple(found)
+                imported.append((whole, "") if whole in modules() else (node.module or "", alias.name))
+    return tuple(imported)
 
 
 def inside(name: str, folders: set[str]) -> bool:
@@ -142,8 +142,8 @@ def test_sweeps_are_known_to_the_edge_only() -> None:
     left_out = {"jaxhydro.sweep", "calibration.report.sweep_page"}
     for name in modules():
         if not inside(name, left_out | {"jaxhydro.cli", "calibration.report", "calibration.results.schema"}):
-            known = {module for module, _ in imports(name) if inside(module, left_out)}
-            assert not known, f"{name} imports {known}"
+            edge_imports = {module for module, _ in imports(name) if inside(module, left_out)}
+            assert not edge_imports, f"{name} imports {edge_imports}"
 
 
 def test_calibration_uses_public_names_and_not_the_command_line() -> None:

@@ -98,10 +98,10 @@ def test_seas_refuse_what_they_do_not_know(model, waves):
     ):
         with pytest.raises(ValueError, match=r"stretching: expected .* found 'vertcal'. Did you mean 'vertical'\?"):
             make(stretching="vertcal")
-        for one in get_args(Stretching):
-            assert make(stretching=one).stretching == one
+        for stretching in get_args(Stretching):
+            assert make(stretching=stretching).stretching == stretching
     for make in (lambda **how: jh.IrregularSea(waves, model.environment, **how), lambda **how: Options(**how)):
-        for how, said in (
+        for how, pattern in (
             ({"order": 3}, "order: expected 1 or 2, found 3"),
             ({"order": True}, "order"),
             ({"order": "2"}, "order"),
@@ -109,7 +109,7 @@ def test_seas_refuse_what_they_do_not_know(model, waves):
             ({"kinds": ("sums",)}, "Did you mean 'sum'"),
             ({"kinds": "sum"}, "kinds"),
         ):
-            with pytest.raises(UnknownName, match=said):
+            with pytest.raises(UnknownName, match=pattern):
                 make(**how)
         assert make(order=np.int64(2)).order == 2
     with pytest.raises(UnknownName, match="Did you mean 'ramp'"):
@@ -122,7 +122,7 @@ def test_waves_refuse_what_they_do_not_know(model, waves):
     environment, sea = model.environment, jh.IrregularSea(waves, model.environment)
     spectrum, band = (lambda w: jh.jonswap(w, 3.0, 9.0)), {"low": 0.05, "cutoff": 0.2}
     record = np.sin(np.arange(0.0, 60.0, 0.5))
-    for one, said in (
+    for call, pattern in (
         (lambda: jh.spectrum_components(spectrum, 120.0, environment, seed=1, amplitudes="raleigh", **band), "mean 'rayleigh'"),
         (lambda: separated_record(np.arange(0.0, 60.0, 0.5), record, environment, kinds=("sums",), **band), "mean 'sum'"),
         (lambda: separated_record(np.arange(0.0, 60.0, 0.5), record, environment, order=3, **band), "order: expected 1 or 2"),
@@ -136,12 +136,12 @@ def test_waves_refuse_what_they_do_not_know(model, waves):
         (lambda: exponent_label("column.Cd_t", "peak_perod"), "over: .* Did you mean 'peak_period'"),
         (lambda: load_campaign(CAMPAIGN).record("surge-01x"), "no test 'surge-01x'; there are: "),
     ):
-        with pytest.raises(UnknownName, match=said):
-            one()
+        with pytest.raises(UnknownName, match=pattern):
+            call()
 
 
 def test_integrators_are_known_by_name(model):
-    for one in (
+    for call in (
         lambda: jh.simulate(model, TIMES, method="tsit"),
         lambda: jh.free_decay(model, {"surge": 1.0}, TIMES, method="tsit"),
         lambda: default_step(model, "tsit"),
@@ -149,7 +149,7 @@ def test_integrators_are_known_by_name(model):
         lambda: clock("tsit", 0.0, 1.0, 4),
     ):
         with pytest.raises(UnknownName, match=r"method: expected .* found 'tsit'. Did you mean 'tsit5'\?"):
-            one()
+            call()
     with pytest.raises(UnknownName, match=r"adjoint: .* found 'revers'. Did you mean 'reverse'\?"):
         jh.simulate(model, TIMES, adjoint="revers")
     for method in get_args(Method):
@@ -162,7 +162,7 @@ def convergence_of_pich():
 
 def test_motions_are_known_by_name(model):
     modes, still = jh.natural_modes(model), jh.simulate(model, TIMES, step=1.0)
-    for one in (
+    for call in (
         lambda: modes.of("pich"),
         lambda: still["pich"],
         lambda: jh.free_decay(model, {"pich": 0.1}, TIMES),
@@ -172,15 +172,15 @@ def test_motions_are_known_by_name(model):
         convergence_of_pich,
     ):
         with pytest.raises(KeyError, match=r"no degree of freedom 'pich'; .*surge.* Did you mean 'pitch'\?"):
-            one()
+            call()
     with pytest.raises(ValueError, match="no degree of freedom 3"):
         modes.of(3)
 
 
 def test_labels_are_known_by_name(model):
-    for one in (lambda: model.about("column.Cd_T"), lambda: model.with_values({"column.Cd_T": 1.0})):
+    for call in (lambda: model.about("column.Cd_T"), lambda: model.with_values({"column.Cd_T": 1.0})):
         with pytest.raises(KeyError, match=r"no parameter 'column.Cd_T'; there are: .* Did you mean 'column.Cd_t'\?"):
-            one()
+            call()
     assert str(unknown("parameter", "x", [])) == "no parameter 'x'; there are: none"
 
 

@@ -44,8 +44,8 @@ def run(*words: object, status: int = 0) -> str:
 def result_with(folder: Path, **parameters: float) -> Path:
     folder.mkdir(exist_ok=True)
     path = folder / "calibration.json"
-    found = {label: {"value": value, "unit": "-"} for label, value in parameters.items()}
-    baseline = {"parameters": found, "error": {}, "objective": {"fit": 1.0}, "converged": True}
+    entries = {label: {"value": value, "unit": "-"} for label, value in parameters.items()}
+    baseline = {"parameters": entries, "error": {}, "objective": {"fit": 1.0}, "converged": True}
     path.write_text(json.dumps({"campaign": "a", "jaxhydro": "0.1.0", "baseline": baseline}))
     return path
 
@@ -197,11 +197,11 @@ def test_bad_calibrations_are_told(tmp_path: Path) -> None:
 def test_folders_that_cannot_be_written_are_told_before_the_work(command, tmp_path, monkeypatch) -> None:
     for work in ("jaxhydro.cli.model_commands._model", "calibration.commands.calibrate_command.load_fitted"):
         monkeypatch.setattr(work, lambda *_: pytest.fail("the work began"))
-    more = {"simulate": [PLATFORM, "--release", "surge=1"], "calibrate": [DEMO], "demo": []}[command]
+    arguments = {"simulate": [PLATFORM, "--release", "surge=1"], "calibrate": [DEMO], "demo": []}[command]
     file = tmp_path / "file"
     file.write_text("keep")
     for out in (file, file / "below", tmp_path / ("x" * 300)):
-        assert "--out: expected a folder" in run(command, *more, "--out", out, status=2)
+        assert "--out: expected a folder" in run(command, *arguments, "--out", out, status=2)
     assert [path.name for path in tmp_path.iterdir()] == ["file"] and file.read_text() == "keep"
 
 

@@ -28,15 +28,15 @@ SHORT = ("--duration", 60, "--dt", 0.5, "--transient", 0, "--no-figures")
     ],
 )
 def test_bad_input_has_one_clear_message(tmp_path: Path, words: tuple, expected: str) -> None:
-    said = run("simulate", "oc3-hywind", *words, "--out", tmp_path / "out", status=2)
-    assert expected in said, said
+    message = run("simulate", "oc3-hywind", *words, "--out", tmp_path / "out", status=2)
+    assert expected in message, message
     assert not (tmp_path / "out" / "motion.csv").exists()
 
 
 def test_a_file_without_directions_is_told(tmp_path: Path) -> None:
     (tmp_path / "flat.csv").write_text("freq,efth\n0.1,1\n0.2,1\n", encoding="utf-8")
-    said = run("simulate", "oc3-hywind", "--sea-file", tmp_path / "flat.csv", "--out", tmp_path / "out", status=2)
-    assert "expected a column dir, beside freq and efth, found freq, efth" in said, said
+    message = run("simulate", "oc3-hywind", "--sea-file", tmp_path / "flat.csv", "--out", tmp_path / "out", status=2)
+    assert "expected a column dir, beside freq and efth, found freq, efth" in message, message
 
 
 @pytest.mark.slow

@@ -72,8 +72,10 @@ def test_a_sea_is_written(written, model) -> None:
         np.testing.assert_allclose(data.wave_first_order, sea.gauge(data.time.values, order=1), atol=1e-12)
         np.testing.assert_allclose(data.simulated.sel(channel="pitch"), table.pitch_deg, atol=1e-7)
         assert data.wave.units == data.wave_first_order.units == "m"
-        told = {name: data.attrs[name] for name in ("seed", "order", "stretching", "diffraction", "cutoff", "peak_period")}
-    assert told == {
+        attributes = {
+            name: data.attrs[name] for name in ("seed", "order", "stretching", "diffraction", "cutoff", "peak_period")
+        }
+    assert attributes == {
         "seed": 4,
         "order": 2,
         "stretching": "vertical",
@@ -85,21 +87,21 @@ def test_a_sea_is_written(written, model) -> None:
 
 def test_statistics_are_those_of_the_series(written) -> None:
     out, text = written
-    found = json.loads((out / "statistics.json").read_text())
+    statistics = json.loads((out / "statistics.json").read_text())
     table = pd.read_csv(out / "motion.csv")
-    kept = table[table.time_s >= 0.25 * 299.5]
-    assert found["window"] == [kept.time_s.iloc[0], 299.5] and found["sea"]["transient"] == 0.25 * 299.5
+    after_transient = table[table.time_s >= 0.25 * 299.5]
+    assert statistics["window"] == [after_transient.time_s.iloc[0], 299.5] and statistics["sea"]["transient"] == 0.25 * 299.5
     for channel, column in {"wave": "wave_m", "surge": "surge_m", "pitch": "pitch_deg"}.items():
-        one, values = found["statistics"][channel], kept[column]
-        assert one["mean"] == pytest.approx(values.mean(), rel=1e-6)
-        assert one["standard_deviation"] == pytest.approx(values.std(ddof=0), rel=1e-6)
-        assert (one["minimum"], one["maximum"]) == pytest.approx((values.min(), values.max()), rel=1e-6)
-        assert f"{one['standard_deviation']:.4g}" in text
-    assert found["statistics"]["sway"]["standard_deviation"] == 0 and found["statistics"]["sway"]["skewness"] is None
-    pitch = found["bands"]["pitch"]
+        summary, values = statistics["statistics"][channel], after_transient[column]
+        assert summary["mean"] == pytest.approx(values.mean(), rel=1e-6)
+        assert summary["standard_deviation"] == pytest.approx(values.std(ddof=0), rel=1e-6)
+        assert (summary["minimum"], summary["maximum"]) == pytest.approx((values.min(), values.max()), rel=1e-6)
+        assert f"{summary['standard_deviation']:.4g}" in text
+    assert statistics["statistics"]["sway"]["standard_deviation"] == 0 and statistics["statistics"]["sway"]["skewness"] is None
+    pitch = statistics["bands"]["pitch"]
     assert pitch["low_frequency"]["band"] == [0.02, 0.055] and pitch["wave_frequency"]["band"] == [0.06, 0.15]
-    assert 0 < pitch["low_frequency"]["integral"] < found["statistics"]["pitch"]["standard_deviation"] ** 2
-    assert set(found["bands"]["wave"]) == {"wave_frequency"} and "yaw" not in found["bands"]
+    assert 0 < pitch["low_frequency"]["integral"] < statistics["statistics"]["pitch"]["standard_deviation"] ** 2
+    assert set(statistics["bands"]["wave"]) == {"wave_frequency"} and "yaw" not in statistics["bands"]
 
 
 @pytest.mark.slow
@@ -125,8 +127,8 @@ def test_nothing_of_an_earlier_sea_is_left(written, tmp_path) -> None:
     out = shutil.copytree(written[0], tmp_path / "o")
     (out / "figures" / "mine.png").write_text("mine")
     run("simulate", PLATFORM, "--release", "heave=1", "--duration", 20, "--out", out)
-    left = {path.name for path in out.rglob("*") if path.is_file()}
-    assert left == {"motion.csv", "simulated.nc", "motion.png", "mine.png"}
+    remaining = {path.name for path in out.rglob("*") if path.is_file()}
+    assert remaining == {"motion.csv", "simulated.nc", "motion.png", "mine.png"}
 
 
 def test_results_of_a_campaign_are_not_spoilt(tmp_path) -> None:
@@ -141,9 +143,9 @@ def test_results_of_a_campaign_are_not_spoilt(tmp_path) -> None:
 
 def built(model: jh.Model, duration: float = 600.0, **options):
     given = {f"--{name.replace('_', '-')}": value for name, value in options.items()}
-    asked = sea_options.asked(given, 0.0)
-    assert asked is not None
-    return sea_command.build_sea(model, asked, duration)
+    requested = sea_options.asked(given, 0.0)
+    assert requested is not None
+    return sea_command.build_sea(model, requested, duration)
 
 
 def test_spectra_and_their_notes(model) -> None:
@@ -280,18 +282,18 @@ def test_a_campaign_is_handed_on(tmp_path, monkeypatch) -> None:
     run("simulate", DEMO / "campaign.yaml", *options, "--calibration", "c.json", "--out", tmp_path, status=NOT_CONVERGED)
     usual = {"asked": {}, "calibration": None, "figures": True}
     how = {"order": 1, "stretching": "wheeler", "diffraction": "none", "cutoff": 0.2}
-    asked = {"asked": how, "calibration": Path("c.json"), "figures": False}
-    assert calls == [(DEMO, tmp_path, usual), (DEMO / "campaign.yaml", tmp_path, asked)]
+    expected_options = {"asked": how, "calibration": Path("c.json"), "figures": False}
+    assert calls == [(DEMO, tmp_path, usual), (DEMO / "campaign.yaml", tmp_path, expected_options)]
     for option in ("--hs", "--wave-height", "--duration", "--transient", "--wave", "--elements", "--heading", "--dt"):
         text = run("simulate", DEMO, option, 3, "--out", tmp_path, status=2)
         assert f"{option}: it goes with a platform, not with a campaign" in text
 
 
 @pytest.mark.parametrize(
-    ("kept", "transient", "pace"), [(1385.0, None, 1.0), (10.1, None, 1.0), (3000.0, None, 1.0), (100.0, 600.0, 1.0)]
+    ("counted", "transient", "pace"), [(1385.0, None, 1.0), (10.1, None, 1.0), (3000.0, None, 1.0), (100.0, 600.0, 1.0)]
 )
-def test_a_duration_that_is_advised_is_enough(kept: float, transient: float | None, pace: float) -> None:
-    advised = sea_command.duration_of(kept, transient, pace)
+def test_a_duration_that_is_advised_is_enough(counted: float, transient: float | None, pace: float) -> None:
+    advised = sea_command.duration_of(counted, transient, pace)
     left_out = usual_transient(advised, pace) if transient is None else transient
-    assert kept <= advised - left_out < 1.15 * kept + 0.1 * left_out
+    assert counted <= advised - left_out < 1.15 * counted + 0.1 * left_out
     assert "e" not in f"{advised:g}" and len(f"{advised:g}".strip("0").replace(".", "")) <= 2  # short enough to type

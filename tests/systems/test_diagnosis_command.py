@@ -54,8 +54,8 @@ def one_decay(tmp_path_factory: pytest.TempPathFactory) -> Path:
 # --- the command
 
 
-def run(*said: object, status: int = 0) -> str:
-    result = CliRunner().invoke(cli.app, [str(word) for word in said])
+def run(*arguments: object, status: int = 0) -> str:
+    result = CliRunner().invoke(cli.app, [str(word) for word in arguments])
     text = " ".join(re.sub("[│╭╮╰╯─]", " ", result.output).split())
     assert result.exit_code == status and "Traceback" not in text, text
     return text
@@ -82,7 +82,7 @@ def searching(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPath
 def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path) -> None:
     searching["it"] = result
     text = run("diagnose", DEMO, "--out", tmp_path / "o")
-    for said in (
+    for passage in (
         "9 tests fitted",
         "reading the records scoring: iteration 1, -2 ln L = 812",
         "The model lacks Coulomb friction in surge",
@@ -94,7 +94,7 @@ def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path
         "sea-1 fitted surge low frequency -24 % -3 %",
         "Next test: a static pull-out",
     ):
-        assert said in text, said
+        assert passage in text, passage
     assert {path.name for path in (tmp_path / "o").iterdir()} == {"diagnosis.json", "simulated.nc", "figures"}
     assert "report.html" in run("report", tmp_path / "o")
     run("diagnose", DEMO / "campaign.yaml", "--no-figures", "--out", tmp_path / "p")
@@ -102,7 +102,7 @@ def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path
 
 
 @pytest.mark.parametrize(
-    ("outcome", "status", "said", "written"),
+    ("outcome", "status", "expected", "written"),
     [
         ("unconverged", 3, "not converged: the results are marked so", True),
         ("stopped", 3, "the same command goes on from what was reached", True),
@@ -114,7 +114,7 @@ def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path
         ("bad", 2, "tests: expected at least one, found none", False),
     ],
 )
-def test_what_does_not_converge(searching, one_decay, outcome, status, said, written, tmp_path) -> None:
+def test_what_does_not_converge(searching, one_decay, outcome, status, expected, written, tmp_path) -> None:
     good = fake_diagnosis()
     stopped = Interrupted(None)
     stopped.partial = good  # type: ignore[assignment]
@@ -128,7 +128,7 @@ def test_what_does_not_converge(searching, one_decay, outcome, status, said, wri
         "not finite": replace(good, baseline=changed(good.baseline, 0, simulated=np.full(2400, np.nan))),
         "bad": InputError("campaign.yaml", [Problem("tests", "at least one", "none")]),
     }[outcome]
-    assert said in run("diagnose", one_decay, "--no-figures", "--out", tmp_path / "o", status=status)
+    assert expected in run("diagnose", one_decay, "--no-figures", "--out", tmp_path / "o", status=status)
     assert (tmp_path / "o").exists() == written and not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
     if written:
         content = json.loads((tmp_path / "o" / "diagnosis.json").read_text())
@@ -156,13 +156,13 @@ def test_a_stopped_search_does_not_say_that_nothing_is_missing(searching, one_de
 
 def test_results_do_not_replace_those_of_other_commands(searching, one_decay, result: Diagnosis, tmp_path: Path) -> None:
     searching["it"] = result
-    mine = write_diagnosis(result, tmp_path / "mine", figures=False)
-    theirs = write_calibration(result.baseline, tmp_path / "theirs", figures=False)
-    assert "which has the results of a diagnosis" in run("calibrate", one_decay, "--out", mine, status=2)
-    assert "which has the results of a calibration" in run("diagnose", one_decay, "--out", theirs, status=2)
-    (theirs / "simulated.nc").unlink()
-    assert "which has the results of a calibration" in run("diagnose", one_decay, "--out", theirs, status=2)
-    run("diagnose", one_decay, "--no-figures", "--out", mine)
+    diagnosis_folder = write_diagnosis(result, tmp_path / "mine", figures=False)
+    calibration_folder = write_calibration(result.baseline, tmp_path / "theirs", figures=False)
+    assert "which has the results of a diagnosis" in run("calibrate", one_decay, "--out", diagnosis_folder, status=2)
+    assert "which has the results of a calibration" in run("diagnose", one_decay, "--out", calibration_folder, status=2)
+    (calibration_folder / "simulated.nc").unlink()
+    assert "which has the results of a calibration" in run("diagnose", one_decay, "--out", calibration_folder, status=2)
+    run("diagnose", one_decay, "--no-figures", "--out", diagnosis_folder)
     assert "no such folder" in run("diagnose", tmp_path / "none", "--out", tmp_path / "o", status=2)
     assert not (tmp_path / "o").exists()
 
@@ -187,8 +187,8 @@ def test_simulations_have_the_effects_that_were_found(written: Path, tmp_path: P
     assert len(used.model.loads) == len(model.loads) + 2 and read_saved(tmp_path).key == "augmented"
     elsewhere = apply_calibration(path, model, "another")
     assert elsewhere.not_used == ("mass_properties.mass",) and FORCE in elsewhere.values
-    found = model_commands._model(str(DEMO / "platform.yaml"), path, None, None)
-    assert float(found.values["mass_properties.mass"]) == 1e5 and FORCE in capsys.readouterr().out
+    fitted = model_commands._model(str(DEMO / "platform.yaml"), path, None, None)
+    assert float(fitted.values["mass_properties.mass"]) == 1e5 and FORCE in capsys.readouterr().out
 
 
 @pytest.mark.slow
@@ -230,10 +230,10 @@ def test_simulations_have_the_strips_and_seas_that_were_taken(
 
 
 def test_effects_are_added_for_what_the_model_has_not(written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = []
+    requests = []
 
     def with_effects(model, labels):
-        asked.append(list(labels))
+        requests.append(list(labels))
         return model
 
     monkeypatch.setattr("calibration.discovery.effects.candidates.with_effects", with_effects)
@@ -241,7 +241,7 @@ def test_effects_are_added_for_what_the_model_has_not(written: Path, tmp_path: P
     path = saved_with(written, tmp_path, {"column.Ca_t": 1.5, FORCE: 81000.0}, "VolturnUS-S")
     with pytest.raises(InputError, match=r"augmented\.parameters: expected parameters of this hull .* found 'coulomb_friction"):
         apply_calibration(path, model, "this hull")
-    assert asked == [[FORCE]]
+    assert requests == [[FORCE]]
 
 
 def test_effects_of_another_version_are_told(written: Path, tmp_path: Path) -> None:

@@ -49,18 +49,18 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_site_is_whole(site: Path) -> None:
     """All pages of docs/ and all notebooks are there, and links and images lead to what is there."""
     pages = {path: Page(path.read_text("utf-8")) for path in site.rglob("*.html") if "_static" not in path.parts}
-    there = {path.relative_to(site).with_suffix("").as_posix() for path in pages}
+    names = {path.relative_to(site).with_suffix("").as_posix() for path in pages}
     written = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}
     notebooks = {f"tutorials/{path.stem}" for path in (ROOT / "notebooks").glob("*.ipynb")}
-    assert {*PAGES, *written, *notebooks, "contributing", "changelog"} <= there
+    assert {*PAGES, *written, *notebooks, "contributing", "changelog"} <= names
     broken = []
     for path, page in pages.items():
         for link in page.links:
             parts = urlsplit(link)
             if not (parts.scheme or parts.netloc):
                 target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
-                known = pages[target].anchors if target in pages else {"", parts.fragment}
-                if not target.is_file() or unquote(parts.fragment) not in known:
+                anchors = pages[target].anchors if target in pages else {"", parts.fragment}
+                if not target.is_file() or unquote(parts.fragment) not in anchors:
                     broken.append(f"{path.relative_to(site)}: {link}")
     assert not broken
 

@@ -12,8 +12,8 @@ def test_it_writes_a_deck_and_a_page(tmp_path: Path) -> None:
     names = {path.name for path in (tmp_path / "deck").iterdir()}
     assert {"main.fst", "elastodyn.dat", "hydrodyn.dat", "seastate.dat", "export.md", "potential.hst"} <= names
     assert "left out" in text and "## Approximated" in page and "## Left out" in page and "OC3-Hywind spar" in page
-    told = run("export", "oc3-hywind", "--out", tmp_path / "deck", status=2)
-    assert "a folder that is new or empty" in told
+    message = run("export", "oc3-hywind", "--out", tmp_path / "deck", status=2)
+    assert "a folder that is new or empty" in message
 
 
 def test_it_writes_a_raft_design(tmp_path: Path) -> None:

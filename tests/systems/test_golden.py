@@ -15,8 +15,8 @@ def test_numbers_are_those_kept(name: str) -> None:
 
 
 def test_differences_are_told() -> None:
-    kept = {"a": 1.0, "b": 2, "c": True, "d": "surge", "e": None, "f": 3.0}
-    found = {"a": 1.0 + 1e-12, "b": 2.001, "c": False, "d": "heave", "e": 0.0}
-    lines = differences(kept, found, 1e-9)
+    expected = {"a": 1.0, "b": 2, "c": True, "d": "surge", "e": None, "f": 3.0}
+    actual = {"a": 1.0 + 1e-12, "b": 2.001, "c": False, "d": "heave", "e": 0.0}
+    lines = differences(expected, actual, 1e-9)
     assert [line.partition(":")[0] for line in lines] == ["b", "c", "d", "e", "f"]
-    assert not differences(kept, kept | {"new": 1.0}, 1e-9)
+    assert not differences(expected, expected | {"new": 1.0}, 1e-9)

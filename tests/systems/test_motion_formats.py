@@ -51,11 +51,11 @@ def test_openfast_binary(tmp_path: Path) -> None:
     """Half a step of the 16-bit integers."""
     pytest.importorskip("openfast_io")
     table = written(tmp_path, "outb")
-    found = read_table(tmp_path / "motion.outb")
-    assert list(found.columns) == ["Time", *MOTIONS, "Wave1Elev"]
-    assert found.attrs["stated"] == {"Time": "s", **dict(zip(MOTIONS, 3 * ["m"] + 3 * ["deg"])), "Wave1Elev": "m"}
+    read = read_table(tmp_path / "motion.outb")
+    assert list(read.columns) == ["Time", *MOTIONS, "Wave1Elev"]
+    assert read.attrs["stated"] == {"Time": "s", **dict(zip(MOTIONS, 3 * ["m"] + 3 * ["deg"])), "Wave1Elev": "m"}
     step = np.ptp(table.to_numpy(), axis=0) / 65535
-    assert (np.abs(found.to_numpy() - table.to_numpy()) <= 0.51 * step + 1e-8).all()
+    assert (np.abs(read.to_numpy() - table.to_numpy()) <= 0.51 * step + 1e-8).all()
 
 
 def test_a_simulation_without_them_takes_them_away(tmp_path: Path) -> None:

@@ -39,7 +39,7 @@ def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_is_read(path: Path) -> None:
     """It begins with a heading, ends in words, and its outputs are small; so a page shows it without running it."""
-    every = json.loads(path.read_text("utf-8"))
-    assert every["nbformat"] == 4 and cells(path, "markdown")[0].startswith("# ")
-    assert every["cells"][-1]["cell_type"] == "markdown"
+    notebook = json.loads(path.read_text("utf-8"))
+    assert notebook["nbformat"] == 4 and cells(path, "markdown")[0].startswith("# ")
+    assert notebook["cells"][-1]["cell_type"] == "markdown"
     assert path.stat().st_size < 300_000

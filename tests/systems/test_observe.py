@@ -171,8 +171,8 @@ def test_a_campaign_is_compared_with_what_sensors_read(folder: Path) -> None:
     own = ((jnp.stack([position, rate], axis=1) - cut.smooth) / cut.loose).reshape(len(rate), -1)
     assert jnp.abs(own).max() < 1.0  # the record has nearly these states, where it is read a lag later
     shared = jnp.concatenate([space.start, jnp.zeros(blocks.observations)])
-    left = simulate_blocks(blocks, Unknowns(shared, own)).residual
-    assert np.sqrt(float((left**2).sum()) / blocks.observations) < 0.01
+    residual = simulate_blocks(blocks, Unknowns(shared, own)).residual
+    assert np.sqrt(float((residual**2).sum()) / blocks.observations) < 0.01
 
 
 @pytest.mark.slow
@@ -218,10 +218,10 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     damping = ("linear_damping.B33",)
     before = calibration(null, setup.baseline, damping)
 
-    def moved(some: Sequence[str], size: float, far: float) -> Point:
+    def moved(effects: Sequence[str], size: float, far: float) -> Point:
         """A point where effects have some size, and their shapes are some steps off."""
-        parts = [(size, label) for effect in some for label in kinds[effect].amplitudes]
-        parts += [(far, label) for effect in some for label in kinds[effect].shapes]
+        parts = [(size, label) for effect in effects for label in kinds[effect].amplitudes]
+        parts += [(far, label) for effect in effects for label in kinds[effect].shapes]
         rows = [step * study.directions[study.names.index(label)] for step, label in parts]
         return Point(started + sum(rows, np.zeros_like(started)), null.own)
 
@@ -233,15 +233,15 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
         step_of[effect] = point.x - started
         after = fitted_tests(campaign, fits, point)
         pairs = [pair for test, first in zip(after, before.tests) for pair in zip(test.series, first.series)]
-        if not any(abs(series.relative / other.relative - 1) > 0.01 for series, other in pairs):
+        if not any(abs(series.relative / first_series.relative - 1) > 0.01 for series, first_series in pairs):
             still.add(effect)
     # drag hardly matters for this buoy in a sea of 2 m
     assert still <= {"amplitude_dependent_drag", "current"}
     for i in range(GROUPS):  # programs of many models take long to compile
-        some = list(kinds)[i::GROUPS]
-        point = Point(started + 0.5 * sum(step_of[effect] for effect in some), null.own)
+        group = list(kinds)[i::GROUPS]
+        point = Point(started + 0.5 * sum(step_of[effect] for effect in group), null.own)
         values = {
-            label: study.value(label, point.x) for effect in some for label in (*kinds[effect].labels, *kinds[effect].choices)
+            label: study.value(label, point.x) for effect in group for label in (*kinds[effect].labels, *kinds[effect].choices)
         }
         model = with_effects(setup.baseline, values).with_values(values)
         after = calibration(point, model, (*damping, *values))
@@ -249,15 +249,20 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
             baseline=before, augmented=after, seas=OPTIONS, campaign=campaign.manifest.name, predictions=()
         )
         write_diagnosis(diagnosis, tmp_path / str(i), figures=False)
-        said = json.loads((tmp_path / str(i) / "diagnosis.json").read_text())["augmented"]["error"]
+        diagnosed = json.loads((tmp_path / str(i) / "diagnosis.json").read_text())["augmented"]["error"]
         used = apply_calibration(tmp_path / str(i) / "diagnosis.json", campaign.model, campaign.platform.name)
         assert set(values) <= set(used.values)
         assert simulate_campaign(folder, tmp_path / "out", calibration=tmp_path / str(i) / "diagnosis.json")
         simulated = json.loads((tmp_path / "out" / "comparison.json").read_text())["error"]
         for id, errors in simulated.items():
             for name in CHANNELS:
-                assert errors[name]["rmse"] == pytest.approx(said[id][name]["rmse"], rel=2e-3), (some, id, name)
-                assert errors[name]["relative"] == pytest.approx(said[id][name]["relative"], rel=2e-3), (some, id, name)
+                assert errors[name]["rmse"] == pytest.approx(diagnosed[id][name]["rmse"], rel=2e-3), (group, id, name)
+                assert errors[name]["relative"] == pytest.approx(diagnosed[id][name]["relative"], rel=2e-3), (group, id, name)
             for name, bands in errors["bands"].items():
                 for band, error in bands.items():
-                    assert error == pytest.approx(said[id]["bands"][name][band], rel=2e-3, abs=2e-3), (some, id, name, band)
+                    assert error == pytest.approx(diagnosed[id]["bands"][name][band], rel=2e-3, abs=2e-3), (
+                        group,
+                        id,
+                        name,
+                        band,
+                    )

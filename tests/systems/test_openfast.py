@@ -66,9 +66,9 @@ def test_decay_against_openfast(dof: str, channel: str) -> None:
     ten = times <= reference.time[0] + 10 * reference.period[0]
     times, motion = times[ten], motion[ten]
     response = jh.simulate(jh.build(platform(setup)), times, position=jnp.asarray(start), step=0.5)
-    found = decay_cycles(times, np.asarray(response[dof]))
+    simulated = decay_cycles(times, np.asarray(response[dof]))
 
-    cycles = min(len(found.period), 18)
+    cycles = min(len(simulated.period), 18)
     assert cycles >= 15
-    assert np.abs(found.period[:cycles] / reference.period[:cycles] - 1).max() < 5e-3
+    assert np.abs(simulated.period[:cycles] / reference.period[:cycles] - 1).max() < 5e-3
     assert np.abs(np.asarray(response[dof]) - motion).max() < 0.02 * np.abs(start).max()

@@ -25,29 +25,34 @@ def normal(name: str) -> str:
 
 def declared() -> set[str]:
     """All required distributions but those of development and documentation; `distributed` of `dask[distributed]`, too."""
-    extras = [one for name, some in PROJECT["optional-dependencies"].items() if name not in ("dev", "docs") for one in some]
-    parts = [re.match(r"([\w.-]+)(?:\[(.*)\])?", one).groups("") for one in (*PROJECT["dependencies"], *extras)]
-    return {normal(name) for name, more in parts for name in (name, *more.split(","))}
+    extras = [
+        requirement
+        for name, requirements in PROJECT["optional-dependencies"].items()
+        if name not in ("dev", "docs")
+        for requirement in requirements
+    ]
+    parts = [re.match(r"([\w.-]+)(?:\[(.*)\])?", requirement).groups("") for requirement in (*PROJECT["dependencies"], *extras)]
+    return {normal(name) for name, options in parts for name in (name, *options.split(","))}
 
 
 def imported() -> dict[str, str]:
     """Modules of others that the packages import, each with a file that does."""
-    found = {}
+    file_of = {}
     for path in (path for package in OWN for path in (ROOT / package).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
             names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-            found |= {name.split(".")[0]: str(path.relative_to(ROOT)) for name in names}
-    return {name: path for name, path in found.items() if name not in sys.stdlib_module_names and name not in OWN}
+            file_of |= {name.split(".")[0]: str(path.relative_to(ROOT)) for name in names}
+    return {name: path for name, path in file_of.items() if name not in sys.stdlib_module_names and name not in OWN}
 
 
 def test_every_import_is_a_declared_dependency() -> None:
     """Not one that another dependency happens to bring along. jaxlib is a part of jax."""
-    known, named = packages_distributions(), declared()
+    distributions, named = packages_distributions(), declared()
     missing = {
         module: path
         for module, path in imported().items()
-        if module != "jaxlib" and not named & {normal(one) for one in known.get(module, [module])}
+        if module != "jaxlib" and not named & {normal(distribution) for distribution in distributions.get(module, [module])}
     }
     assert not missing
 

@@ -16,21 +16,23 @@ SHADOWED = {("jaxhydro.waves", "components")}  # a function with the name of its
 @pytest.mark.parametrize("package", [jaxhydro, calibration], ids=lambda package: package.__name__)
 def test_arguments_are_explicit(package: ModuleType) -> None:
     """So that an editor completes them and a type checker knows them."""
-    functions = {name: one for name in package.__all__ if inspect.isfunction(one := getattr(package, name))}
+    functions = {name: member for name in package.__all__ if inspect.isfunction(member := getattr(package, name))}
     assert len(functions) > 10
     for name, function in functions.items():
-        kinds = {one.kind for one in inspect.signature(function).parameters.values()}
+        kinds = {parameter.kind for parameter in inspect.signature(function).parameters.values()}
         assert inspect.Parameter.VAR_KEYWORD not in kinds, name
 
 
 @pytest.mark.parametrize("package", [jaxhydro, calibration], ids=lambda package: package.__name__)
 def test_no_function_hides_a_module(package: ModuleType) -> None:
     folders = [package.__name__]
-    folders += [one.name for one in pkgutil.walk_packages(package.__path__, f"{package.__name__}.") if one.ispkg]
+    folders += [
+        module_info.name for module_info in pkgutil.walk_packages(package.__path__, f"{package.__name__}.") if module_info.ispkg
+    ]
     hidden = set()
     for folder in folders:
         module = importlib.import_module(folder)
-        for one in pkgutil.iter_modules(module.__path__):
-            if not isinstance(getattr(module, one.name, module), ModuleType):
-                hidden.add((folder, one.name))
+        for module_info in pkgutil.iter_modules(module.__path__):
+            if not isinstance(getattr(module, module_info.name, module), ModuleType):
+                hidden.add((folder, module_info.name))
     assert hidden <= SHADOWED

@@ -36,7 +36,7 @@ SHARE = np.array([1.0, 1, 1, 0, 0, 0])  # of the powers of the length that displ
 @cache
 def barge_platform(size: float) -> Platform:
     """A tapered barge with a bilge column, moored by springs: lengths times `size`."""
-    n, point = size**3, lambda *x: [size * one for one in x]
+    n, point = size**3, lambda *x: [size * coordinate for coordinate in x]
     data = {
         "name": f"barge {size:g}",
         "water": {"density": RHO, "depth": 60.0 * size, "gravity": G},
@@ -109,11 +109,11 @@ def test_statics_and_modes() -> None:
     power = 2 + (1 - SHARE)[:, None] + (1 - SHARE)[None]
     assert np.abs(stiff[0] / SMALL**power - stiff[1]).max() < 1e-6 * np.abs(stiff[1]).max()
     assert_allclose(np.diag(stiff[0] / SMALL**power)[:5], np.diag(stiff[1])[:5], rtol=1e-6)
-    first, other = natural_modes(small), natural_modes(large)
-    assert_allclose(first.period / SMALL**0.5, other.period, rtol=1e-6)
-    assert_allclose(np.abs(first.shape), np.abs(other.shape), atol=1e-5)
+    first, second = natural_modes(small), natural_modes(large)
+    assert_allclose(first.period / SMALL**0.5, second.period, rtol=1e-6)
+    assert_allclose(np.abs(first.shape), np.abs(second.shape), atol=1e-5)
     assert [first.of(dof) / SMALL**0.5 for dof in ("surge", "heave", "pitch")] == pytest.approx(
-        [other.of(dof) for dof in ("surge", "heave", "pitch")], rel=1e-6, nan_ok=True
+        [second.of(dof) for dof in ("surge", "heave", "pitch")], rel=1e-6, nan_ok=True
     )
 
 
@@ -125,12 +125,12 @@ def moved(model: Model, size: float, sea=None, **start: float) -> np.ndarray:
 
 @pytest.mark.slow
 def test_a_decay_and_a_regular_wave() -> None:
-    found = {}
+    responses = {}
     for size in (SMALL, 1.0):
         model = barge(size)
         sea = jh.regular_wave(3.0 * size, 9.0 * size**0.5, model.environment, heading=0.4, ramp=20.0 * size**0.5)
-        found[size] = (moved(model, size, surge=4.0, heave=1.0, pitch=0.05), moved(model, size, sea))
-    for small, large in zip(found[SMALL], found[1.0]):
+        responses[size] = (moved(model, size, surge=4.0, heave=1.0, pitch=0.05), moved(model, size, sea))
+    for small, large in zip(responses[SMALL], responses[1.0]):
         same(small, large, SHARE)
 
 
@@ -138,7 +138,7 @@ def test_a_decay_and_a_regular_wave() -> None:
 @pytest.mark.parametrize("order", [1, 2])
 def test_an_irregular_sea(order: int) -> None:
     """The steps and the box that it is prepared for follow the hull."""
-    found = {}
+    responses = {}
     for size in (SMALL, 1.0):
         model, pace = barge(size), size**0.5
         waves = spectrum_components(
@@ -149,15 +149,17 @@ def test_an_irregular_sea(order: int) -> None:
             cutoff=0.22 / pace,
             seed=3,
         )
-        found[size] = moved(model, size, jh.IrregularSea(waves, model.environment, order))
-    same(found[SMALL], found[1.0], SHARE)
+        responses[size] = moved(model, size, jh.IrregularSea(waves, model.environment, order))
+    same(responses[SMALL], responses[1.0], SHARE)
 
 
 def test_boxes_of_seas_are_of_one_shape() -> None:
     points = np.array([[-20.0, 25.0], [3.0, 4.0], [-21.0, 15.0]])
     for excursion in (20.0, 34.3):
-        (middle, large), (other, small) = (Box.of(size * points, 0.3, 200.0 * size, excursion * size) for size in (1.0, SMALL))
-        assert other / SMALL == pytest.approx(middle, rel=1e-12)
+        (middle, large), (small_middle, small) = (
+            Box.of(size * points, 0.3, 200.0 * size, excursion * size) for size in (1.0, SMALL)
+        )
+        assert small_middle / SMALL == pytest.approx(middle, rel=1e-12)
         assert [x / SMALL for x in small] == pytest.approx(list(large), rel=1e-12)
 
 
@@ -234,7 +236,7 @@ def test_what_has_entered() -> None:
 @pytest.mark.slow
 def test_a_calibration(tmp_path) -> None:
     """Coefficients fitted to a decay, begun from wrong ones: the same numbers, and damping by its power of the length."""
-    found = []
+    estimates = []
     for size in (1.0, SMALL):
         model, folder = barge(size), tmp_path / f"{size:g}"
         folder.mkdir()
@@ -263,8 +265,10 @@ def test_a_calibration(tmp_path) -> None:
         )
         result = calibrate(campaign, free=["hull.Ca_z", "hull.Cd_z"])
         assert result.converged
-        found.append({label: (one.value, one.standard_deviation) for label, one in result.parameters.items()})
-    large, small = found
+        estimates.append(
+            {label: (estimate.value, estimate.standard_deviation) for label, estimate in result.parameters.items()}
+        )
+    large, small = estimates
     assert large["hull.Ca_z"][0] == pytest.approx(0.5, rel=1e-3) and large["hull.Cd_z"][0] == pytest.approx(1.2, rel=1e-2)
     for label in large:
         assert small[label] == pytest.approx(large[label], rel=1e-6)

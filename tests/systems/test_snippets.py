@@ -21,8 +21,10 @@ def blocks(page: str) -> list[str]:
 
 def test_every_page_with_python_is_run() -> None:
     pages = (ROOT / "docs").rglob("*.md")
-    found = {str(path.relative_to(ROOT)) for path in (*pages, *ROOT.glob("*.md")) if BLOCK.search(path.read_text("utf-8"))}
-    assert found <= {*PAGES, "docs/quickstart.md"}
+    pages_with_python = {
+        str(path.relative_to(ROOT)) for path in (*pages, *ROOT.glob("*.md")) if BLOCK.search(path.read_text("utf-8"))
+    }
+    assert pages_with_python <= {*PAGES, "docs/quickstart.md"}
     (quick,) = blocks("docs/quickstart.md")
     lines = [re.sub(r"\s*#.*", "", line) for line in blocks("README.md")[0].splitlines()]
     assert {re.sub(r"\s*#.*", "", line) for line in quick.splitlines()} <= set(lines)
@@ -32,19 +34,19 @@ def test_every_page_with_python_is_run() -> None:
 @pytest.mark.parametrize("page", PAGES)
 def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In a folder with the package and the measured records beside it; what blocks write stays there."""
-    there = tmp_path / "project"
-    there.mkdir()
-    (there / "jaxhydro").symlink_to(ROOT / "jaxhydro")
+    project = tmp_path / "project"
+    project.mkdir()
+    (project / "jaxhydro").symlink_to(ROOT / "jaxhydro")
     (tmp_path / "shared").symlink_to(ROOT.parent / "shared")
-    monkeypatch.chdir(there)
+    monkeypatch.chdir(project)
     names: dict[str, Any] = {"__name__": "snippet"}
     for block in blocks(page):
         for long, short in SHORTER.items():
             block = block.replace(long, short)
         tree = ast.parse(block)
         if any(text in block for text in NOT_RUN):
-            wanted = [one for one in tree.body if isinstance(one, ast.Import | ast.ImportFrom)]
-            tree = ast.Module([one for one in wanted if "dask" not in ast.unparse(one)], [])
+            wanted = [statement for statement in tree.body if isinstance(statement, ast.Import | ast.ImportFrom)]
+            tree = ast.Module([statement for statement in wanted if "dask" not in ast.unparse(statement)], [])
         elif "../shared" in block and not (tmp_path / "shared").exists():
             continue  # the measured records are no part of the project
         exec(compile(tree, page, "exec"), names)

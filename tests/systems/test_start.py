@@ -70,9 +70,9 @@ def process(code: str, folder: Path, **variables: str) -> dict[str, Any]:
 @pytest.mark.parametrize("package", ["jaxhydro", "calibration"])
 def test_the_import_is_enough(package: str, tmp_path: Path) -> None:
     """Nothing is computed by it, so that the user can still choose devices and flags."""
-    found = process(f"import {package}\n{SHOW}", tmp_path)
-    assert found["jax_enable_x64"] and found["jax_compilation_cache_dir"] == str(tmp_path / "jaxhydro" / "xla")
-    assert QUICK in found["flags"] and not found["begun"]
+    state = process(f"import {package}\n{SHOW}", tmp_path)
+    assert state["jax_enable_x64"] and state["jax_compilation_cache_dir"] == str(tmp_path / "jaxhydro" / "xla")
+    assert QUICK in state["flags"] and not state["begun"]
 
 
 @pytest.mark.slow
@@ -90,8 +90,8 @@ print(json.dumps({"hits": len(hits), "x64": jnp.ones(3).dtype == "float64"}))
 """
     assert process(code, tmp_path) == {"hits": 0, "x64": True}
     assert list((tmp_path / "jaxhydro" / "xla").iterdir())
-    again = process(code, tmp_path)
-    assert again["hits"] > 0
+    second = process(code, tmp_path)
+    assert second["hits"] > 0
 
 
 def test_each_step_can_be_switched_off(untouched: pytest.MonkeyPatch, tmp_path: Path) -> None:
