@@ -26,6 +26,14 @@ NOT_FREE_BY_DEFAULT = (
     "liquid_column_dampers.",
     "rotor.",
 )  # what a decay cannot tell from inertia is left alone unless asked for
+THEORY = (
+    "computed_excitation.",
+    "computed_radiation.",
+    "computed_added_mass.",
+    "diffraction_correction.",
+    "drift_transfer.",
+    "slender_body_forces.",
+)  # tables and laws of theory are complete where a platform states them, unless their share is asked for
 
 
 class FreeParameter(NamedTuple):
@@ -81,7 +89,7 @@ def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
 
     They are coefficients of the members, and the lumped damping and added mass of these degrees of freedom. Parameters of value
     zero stay zero. Laws over the sea state mean nothing in still water. How drag depends on the motion (`drag_`) is free
-    only where it is asked for.
+    only where it is asked for, and so is the share of what theory gives (`THEORY`).
 
     Args:
         model: The model of the platform file.
@@ -91,7 +99,7 @@ def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
     labels, laws = [], law_labels(model)
     for label, value in model.values.items():
         lumped = label.split(".")[0] in ("linear_damping", "quadratic_damping", "added_mass")
-        if label.startswith(NOT_FREE_BY_DEFAULT) or label in laws or float(value) == 0:
+        if label.startswith(NOT_FREE_BY_DEFAULT + THEORY) or label in laws or float(value) == 0:
             continue
         if lumped and not digits >= set(label[-2:]):
             continue
