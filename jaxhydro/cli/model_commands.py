@@ -243,9 +243,9 @@ def _model(
     from jaxhydro.platform.schema import load_platform
 
     contents = load_platform(platform)
-    if heading is not None and (other_waves := contents.of_other_waves(heading)) is not None:
+    if heading is not None and (uncovered := contents.of_other_waves(heading)) is not None:
         raise options.wrong(
-            "--heading", f"{other_waves.words} ({other_waves.key} of the platform file) expected; found {heading:g}"
+            "--heading", f"{uncovered.words} ({uncovered.key} of the platform file) expected; found {heading:g}"
         )
     model = model_of(contents, diffraction, elements)
     return model if calibration is None else calibrated(model, platform, contents.name, calibration)
