@@ -243,9 +243,7 @@ def _model(
     from jaxhydro.platform.schema import load_platform
 
     contents = load_platform(platform)
-    if heading is not None and (uncovered := contents.of_other_waves(heading)) is not None:
-        raise options.wrong(
-            "--heading", f"{uncovered.words} ({uncovered.key} of the platform file) expected; found {heading:g}"
-        )
+    if heading is not None and (tables := contents.of_other_waves(heading)) is not None:
+        raise options.wrong("--heading", f"{tables.words} ({tables.key} of the platform file) expected; found {heading:g}")
     model = model_of(contents, diffraction, elements)
     return model if calibration is None else calibrated(model, platform, contents.name, calibration)
