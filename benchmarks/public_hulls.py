@@ -121,22 +121,22 @@ def natural_periods(mass: np.ndarray, stiffness: np.ndarray, radiation: Any) -> 
 
     def modes(mass: np.ndarray) -> dict[str, float]:
         square, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
-        found: dict[str, float] = {}
+        periods: dict[str, float] = {}
         for i in np.argsort(square.real):
             vector = vectors[:, i].real
             dof = DOFS[int(np.argmax(np.abs(vector * (stiffness @ vector))))]
-            if square[i].real > 1e-10 * square.real.max() and dof not in found:
-                found[dof] = 2 * math.pi / math.sqrt(square[i].real)
-        return found
+            if square[i].real > 1e-10 * square.real.max() and dof not in periods:
+                periods[dof] = 2 * math.pi / math.sqrt(square[i].real)
+        return periods
 
-    found = modes(mass)
+    periods = modes(mass)
     if radiation is None:
-        return found
+        return periods
     omega, added = radiation.omega, radiation.added_mass
     if radiation.zero is not None:
         omega, added = np.array([0.0, *omega]), np.array([radiation.zero, *added])
     own = {}
-    for dof, period in found.items():
+    for dof, period in periods.items():
         for _ in range(ITERATIONS):
             at = [[np.interp(2 * math.pi / period, omega, added[:, i, j]) for j in range(6)] for i in range(6)]
             period = modes(mass + np.array(at) - radiation.infinite).get(dof, period)
@@ -147,9 +147,9 @@ def natural_periods(mass: np.ndarray, stiffness: np.ndarray, radiation: Any) -> 
 def stored(case: Case) -> tuple[dict[str, Any], dict[str, Any]] | None:
     """What was read and the statics of a RAFT design, as `benchmarks.raft_designs` has worked them out, or None."""
     results = json.loads(RAFT_RESULTS.read_text("utf-8"))
-    if (found := results.get(case.source.removeprefix("RAFT/"))) is None:
+    if (design := results.get(case.source.removeprefix("RAFT/"))) is None:
         return None
-    own, items = found["converted"], found["items"]
+    own, items = design["converted"], design["items"]
     rest = own.get("rest")
     periods = own["periods" if rest is None else "periods_at_rest"]
     periods = {dof: period for dof, period in periods.items() if math.isfinite(period)}

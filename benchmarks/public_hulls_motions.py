@@ -59,12 +59,12 @@ class Linear(NamedTuple):
 
     def response(self, omega: Float[np.ndarray, " k"]) -> Complex[np.ndarray, "6 k"]:
         """Motions by wave amplitude (m/m, rad/m) at frequencies (rad/s)."""
-        found = np.zeros((6, len(omega)), complex)
+        motions = np.zeros((6, len(omega)), complex)
         for k, w in enumerate(omega):
             memory = [[np.interp(w, self.omega, self.memory[:, i, j]) for j in range(6)] for i in range(6)]
             force = [np.interp(w, self.omega, row) for row in self.force]
-            found[:, k] = np.linalg.solve(-(w**2) * self.mass + 1j * w * (self.damping + memory) + self.stiffness, force)
-        return found
+            motions[:, k] = np.linalg.solve(-(w**2) * self.mass + 1j * w * (self.damping + memory) + self.stiffness, force)
+        return motions
 
 
 def linear_equation(model: jh.Model, radiation: RadiationCoefficients | None) -> Linear:
@@ -83,7 +83,7 @@ def linear_equation(model: jh.Model, radiation: RadiationCoefficients | None) ->
         for k, w in enumerate(omega):
             for i, j in np.ndindex(6, 6):
                 added, damped = (
-                    np.interp(w, radiation.omega, one[:, i, j]) for one in (radiation.added_mass, radiation.damping)
+                    np.interp(w, radiation.omega, table[:, i, j]) for table in (radiation.added_mass, radiation.damping)
                 )
                 memory[k, i, j] = damped + 1j * w * (added - infinite[i, j])
     return Linear(mass, stiffness, np.zeros((6, 6)), omega, memory, wave_force(model, rest, omega))
@@ -107,7 +107,7 @@ def linear_motion(
     wave, linear = amplitude * np.exp(1j * phase), linear_equation(model, radiation)
     rest = jh.equilibrium(model)
     dry = dataclasses.replace(
-        model, loads=tuple(one for one in model.loads if not isinstance(one, ComputedExcitation | DriftTransfer))
+        model, loads=tuple(load for load in model.loads if not isinstance(load, ComputedExcitation | DriftTransfer))
     )
 
     @eqx.filter_jit
@@ -116,7 +116,7 @@ def linear_motion(
             state = jh.State(rest, velocity, dry.rest().memory)
             return dry.sum_of_loads(dry.instant(time, state, sea), state.memory).force
 
-        return jax.lax.map(lambda one: jax.jacfwd(force)(one[1], one[0]), at).mean(axis=0)
+        return jax.lax.map(lambda moment: jax.jacfwd(force)(moment[1], moment[0]), at).mean(axis=0)
 
     samples = times[:: max(1, len(times) // SAMPLES)]
     turning = np.exp(1j * np.outer(omega, samples))
@@ -159,15 +159,15 @@ def in_band(motion: Float[np.ndarray, "t 6"]) -> Float[np.ndarray, "6"]:
 def decays(model: jh.Model, case: Case, step: float) -> dict[str, Any]:
     """Periods of decays in surge, heave and pitch: the mean of the first half cycles (s)."""
     times, rest = np.arange(0.0, DECAY + INTERVAL / 2, INTERVAL), np.asarray(jh.equilibrium(model))
-    found = {}
+    periods = {}
     for dof, release in case.releases.items():
         start = {dof: math.radians(release) if dof == "pitch" else release}
         motion = np.asarray(jh.free_decay(model, start, times, step=step)[dof]) - rest[jh.DOFS.index(dof)]
         cycles = decay_cycles(times, motion)
         count = len(cycles.period)
         period = float(np.mean(cycles.period[:HALF_CYCLES])) if count >= MIN_HALF_CYCLES else None
-        found[dof] = {"release": release, "half_cycles": count, "period": period}
-    return found
+        periods[dof] = {"release": release, "half_cycles": count, "period": period}
+    return periods
 
 
 def in_sea(model: jh.Model, radiation: RadiationCoefficients | None, step: float | None) -> dict[str, Any]:

@@ -14,29 +14,29 @@ class Motion(NamedTuple):
 
     Attributes:
         quantity: Such as "heave decay" or "pitch sea".
-        found: Of the simulation.
+        simulated: Value of the simulation.
         expected: Natural period, or by linear theory.
         goal: Deviation that needs no reason.
     """
 
     quantity: str
-    found: float
+    simulated: float
     expected: float
     goal: float
 
     @property
     def deviation(self) -> float:
         """Relative deviation from what is expected."""
-        return self.found / self.expected - 1
+        return self.simulated / self.expected - 1
 
     def __str__(self) -> str:
-        return f"{self.found:.4g} ({100 * self.deviation:+.1f} %)"
+        return f"{self.simulated:.4g} ({100 * self.deviation:+.1f} %)"
 
 
-def periods(found: Mapping[str, Any]) -> dict[str, Motion]:
+def periods(result: Mapping[str, Any]) -> dict[str, Motion]:
     """Decays of a hull that have a period and a natural period, by motion."""
-    natural = found["statics"]["periods"]
-    decays = found["motions"]["decays"]
+    natural = result["statics"]["periods"]
+    decays = result["motions"]["decays"]
     return {
         dof: Motion(f"{dof} decay", decays[dof]["period"], natural[dof], DECAY_GOAL)
         for dof in SHOWN
@@ -44,9 +44,9 @@ def periods(found: Mapping[str, Any]) -> dict[str, Motion]:
     }
 
 
-def deviations(found: Mapping[str, Any]) -> dict[str, Motion]:
+def deviations(result: Mapping[str, Any]) -> dict[str, Motion]:
     """Standard deviations of a hull in the sea, by motion."""
-    sea = found["motions"]["sea"]
+    sea = result["motions"]["sea"]
     return (
         {} if sea is None else {dof: Motion(f"{dof} sea", sea["simulated"][dof], sea["linear"][dof], SEA_GOAL) for dof in SHOWN}
     )
@@ -54,15 +54,15 @@ def deviations(found: Mapping[str, Any]) -> dict[str, Motion]:
 
 def with_motions(hulls: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """Hulls whose decays and sea were simulated."""
-    return [found for found in hulls if "motions" in found]
+    return [result for result in hulls if "motions" in result]
 
 
 def motions_summary(hulls: Sequence[Mapping[str, Any]]) -> str:
     """Sentence on how many decays and seas are as expected."""
     moving = with_motions(hulls)
-    decayed = [one for found in moving for one in periods(found).values()]
-    waved = [one for found in moving for one in deviations(found).values()]
-    close, met = (sum(abs(one.deviation) <= one.goal for one in rows) for rows in (decayed, waved))
+    decayed = [motion for result in moving for motion in periods(result).values()]
+    waved = [motion for result in moving for motion in deviations(result).values()]
+    close, met = (sum(abs(motion.deviation) <= motion.goal for motion in rows) for rows in (decayed, waved))
     return (
         f"{close} of {len(decayed)} decays have the natural period within {100 * DECAY_GOAL:g} %. "
         f"{met} of {len(waved)} standard deviations in a sea are those of linear theory within {100 * SEA_GOAL:g} %."
@@ -71,11 +71,11 @@ def motions_summary(hulls: Sequence[Mapping[str, Any]]) -> str:
 
 def motion_sections(hulls: Mapping[str, Mapping[str, Any]], table: Callable[..., str]) -> Iterator[str]:
     """Sections on decays and the sea, by title of hull."""
-    moving = {title: found for title, found in hulls.items() if "motions" in found}
+    moving = {title: result for title, result in hulls.items() if "motions" in result}
     yield "## Decays: period (s), and its deviation from the natural period"
     yield table(
         ("Hull", *SHOWN),
-        [(title, *(str(periods(found).get(dof, "-")) for dof in SHOWN)) for title, found in moving.items()],
+        [(title, *(str(periods(result).get(dof, "-")) for dof in SHOWN)) for title, result in moving.items()],
     )
     yield (
         f"- Decays were run for {len(moving)} of {len(hulls)} hulls, 600 s each.\n"
@@ -84,17 +84,17 @@ def motion_sections(hulls: Mapping[str, Mapping[str, Any]], table: Callable[...,
         "- A hull without a period in a motion has no restoring in it, or is damped too much."
     )
     yield "## Sea: standard deviations, and their deviation from linear theory"
-    waved = {title: found for title, found in moving.items() if found["motions"]["sea"] is not None}
+    waved = {title: result for title, result in moving.items() if result["motions"]["sea"] is not None}
     head = ("Hull", *(f"{dof} ({UNITS[dof]})" for dof in SHOWN), "surge, all frequencies (m)", "mean surge (m)")
     yield table(
         head,
         [
             (
                 title,
-                *(str(one) for one in deviations(found).values()),
-                *(f"{found['motions']['sea'][key]['surge']:.3g}" for key in ("all", "mean")),
+                *(str(motion) for motion in deviations(result).values()),
+                *(f"{result['motions']['sea'][key]['surge']:.3g}" for key in ("all", "mean")),
             )
-            for title, found in waved.items()
+            for title, result in waved.items()
         ],
     )
     yield (
@@ -113,13 +113,13 @@ def motion_reasons(hulls: Sequence[tuple[str, Mapping[str, str], Mapping[str, An
     Args:
         hulls: Title, reasons by quantity, and results of each.
     """
-    for title, reasons, found in hulls:
-        if "motions" not in found:
+    for title, reasons, result in hulls:
+        if "motions" not in result:
             continue
         given: dict[str, list[str]] = {}
-        for one in (*periods(found).values(), *deviations(found).values()):
-            if abs(one.deviation) > one.goal:
-                text = f"{one.quantity} {100 * one.deviation:+.1f} %"
-                given.setdefault(reasons.get(one.quantity, UNEXPLAINED), []).append(text)
+        for motion in (*periods(result).values(), *deviations(result).values()):
+            if abs(motion.deviation) > motion.goal:
+                text = f"{motion.quantity} {100 * motion.deviation:+.1f} %"
+                given.setdefault(reasons.get(motion.quantity, UNEXPLAINED), []).append(text)
         for reason, what in given.items():
             yield f"- {title}: {', '.join(what)}: {reason}"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from benchmarks.public_hulls_cases import CASES, Case, Published
-from benchmarks.public_hulls_motions_text import motion_reasons, motion_sections, motions_summary
+from benchmarks.public_hulls_motions_text import UNEXPLAINED, motion_reasons, motion_sections, motions_summary
 from benchmarks.public_hulls_reasons import MOTIONS
 
 GOAL = 0.02  # deviation that needs no reason
@@ -42,22 +42,22 @@ class Comparison(NamedTuple):
         return abs(self.deviation) <= max(GOAL, self.rounding)
 
 
-def compared(found: Mapping[str, Any], published: Published) -> list[Comparison]:
+def compared(result: Mapping[str, Any], published: Published) -> list[Comparison]:
     """Values of a converted hull beside those of one source."""
     rows = [
-        ("mass", "t", found["mass"] / 1e3, published.mass and published.mass / 1e3),
-        ("displaced volume", "m³", found["volume"], published.volume),
+        ("mass", "t", result["mass"] / 1e3, published.mass and published.mass / 1e3),
+        ("displaced volume", "m³", result["volume"], published.volume),
         (
             "line tension",
             "kN",
-            sum(found["tensions"]) / max(len(found["tensions"]), 1) / 1e3,
+            sum(result["tensions"]) / max(len(result["tensions"]), 1) / 1e3,
             published.tension and published.tension / 1e3,
         ),
-        ("vertical pull of lines", "kN", (found["pull"] or 0.0) / 1e3, published.pull and published.pull / 1e3),
+        ("vertical pull of lines", "kN", (result["pull"] or 0.0) / 1e3, published.pull and published.pull / 1e3),
     ]
     listed = [Comparison(name, unit, ours, value, 0.0, published.source) for name, unit, ours, value in rows if value and ours]
     for dof, period in published.periods.items():
-        ours = found["periods"].get(dof, math.nan)
+        ours = result["periods"].get(dof, math.nan)
         listed.append(Comparison(f"{dof} period", "s", ours, period, published.rounding * period, published.source))
     return listed
 
@@ -93,9 +93,9 @@ def rest_words(rest: list[float] | None) -> str:
     return f"{rest[0]:+.2f} m, {rest[2]:+.2f} m, {math.degrees(rest[4]):+.2f}°"
 
 
-def summary_row(case: Case, found: Mapping[str, Any]) -> tuple[str, ...]:
+def summary_row(case: Case, result: Mapping[str, Any]) -> tuple[str, ...]:
     """Mass, volume, rest and lines of a hull."""
-    still = found["statics"]
+    still = result["statics"]
     tensions = [tension / 1e3 for tension in still["tensions"]]
     return (
         title_of(case),
@@ -113,44 +113,44 @@ def period_row(case: Case, still: Mapping[str, Any]) -> tuple[str, ...]:
     return (title_of(case), *(figures(listed.get(dof, math.nan)) for dof in MOTIONS), last)
 
 
-def read_row(case: Case, found: Mapping[str, Any]) -> tuple[str, ...]:
+def read_row(case: Case, result: Mapping[str, Any]) -> tuple[str, ...]:
     """What became of a source's items."""
-    counts = found["items"]
+    counts = result["items"]
     numbers = (str(counts.get(word, 0)) for word in ("taken", "approximated", "left out"))
-    return (title_of(case), f"`{case.source}`", *numbers, "; ".join(found["warnings"]) or "-")
+    return (title_of(case), f"`{case.source}`", *numbers, "; ".join(result["warnings"]) or "-")
 
 
 def text(results: Mapping[str, Any]) -> str:
     """The page, from the raw results alone."""
-    done = {name: (CASES[name], found) for name, found in results.items() if "statics" in found}
+    done = {name: (CASES[name], result) for name, result in results.items() if "statics" in result}
     rows, reasons, within, total = [], [], 0, 0
-    for case, found in done.values():
+    for case, result in done.values():
         given: dict[str, list[str]] = {}
         for published in case.published:
-            for one in compared(found["statics"], published):
-                finite = math.isfinite(one.deviation)
-                total, within = total + finite, within + (finite and one.within)
+            for comparison in compared(result["statics"], published):
+                finite = math.isfinite(comparison.deviation)
+                total, within = total + finite, within + (finite and comparison.within)
                 rows.append(
                     (
                         title_of(case),
-                        f"{one.quantity} ({one.unit})",
-                        figures(one.ours),
-                        figures(one.published),
-                        percent(one),
-                        one.source,
+                        f"{comparison.quantity} ({comparison.unit})",
+                        figures(comparison.ours),
+                        figures(comparison.published),
+                        percent(comparison),
+                        comparison.source,
                     )
                 )
-                if not finite or not one.within:
-                    reason = case.reasons.get(one.quantity, "not explained yet.")
-                    given.setdefault(reason, []).append(f"{one.quantity} {percent(one)}")
+                if not finite or not comparison.within:
+                    reason = case.reasons.get(comparison.quantity, UNEXPLAINED)
+                    given.setdefault(reason, []).append(f"{comparison.quantity} {percent(comparison)}")
         reasons += [f"- {title_of(case)}: {', '.join(what)}: {reason}" for reason, what in given.items()]
     notes = [f"- {title_of(case)}: {note}" for case, _ in done.values() for note in case.notes]
-    periods = [period_row(case, found["statics"]) for case, found in done.values()]
+    periods = [period_row(case, result["statics"]) for case, result in done.values()]
     parts = [
         "# Public hulls and decks, converted",
         f"{len(done)} public hulls and decks were converted by `jaxhydro convert`. "
         f"{within} of {total} values agree with published ones, or with the source program's own, within 2 % or the rounding. "
-        "Each larger deviation has its reason below. " + motions_summary([found for _, found in done.values()]),
+        "Each larger deviation has its reason below. " + motions_summary([result for _, result in done.values()]),
         "Made by `python -m benchmarks.public_hulls FOLDER`. The sources are copies of public repositories and are not kept "
         "here. "
         "Natural periods are undamped, at rest, with rigid towers. Where a source has radiation tables, each period has the "
@@ -164,27 +164,27 @@ def text(results: Mapping[str, Any]) -> str:
                 "At rest: surge, heave, pitch",
                 "Line tensions (kN)",
             ),
-            [summary_row(case, found) for case, found in done.values()],
+            [summary_row(case, result) for case, result in done.values()],
         ),
         "Tensions are those at the fairleads, at rest, of the lines with the least and the most.",
         "## Natural periods (s)",
         table(("Hull", *MOTIONS, "heave, added mass of infinite frequency"), periods),
         "`natural_modes` and `jaxhydro statics` have the added mass of each period's own frequency, too.",
-        *motion_sections({title_of(case): found for case, found in done.values()}, table),
+        *motion_sections({title_of(case): result for case, result in done.values()}, table),
         "## Against published values",
         table(HEAD, rows),
         "## Reasons of deviations above 2 %",
-        "\n".join([*reasons, *motion_reasons([(title_of(case), case.reasons, found) for case, found in done.values()])])
+        "\n".join([*reasons, *motion_reasons([(title_of(case), case.reasons, result) for case, result in done.values()])])
         or "- None.",
         "## Notes",
         "\n".join(notes) or "- None.",
         "## What was read",
         table(
             ("Hull", "Source", "Taken", "Approximated", "Left out", "Warnings"),
-            [read_row(case, found) for case, found in done.values()],
+            [read_row(case, result) for case, result in done.values()],
         ),
     ]
-    faults = [f"- {title_of(CASES[name])}: {found['fault']}." for name, found in results.items() if "fault" in found]
+    faults = [f"- {title_of(CASES[name])}: {result['fault']}." for name, result in results.items() if "fault" in result]
     parts += ["## What failed", "\n".join(faults)] if faults else []
     absent = [title_of(case) for name, case in CASES.items() if name not in results]
     if absent:

@@ -170,7 +170,7 @@ def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, s
 
 def _print_motion(motion: Motion, wave: tuple[float, float] | None, ramp: float) -> None:
     values = motion.values
-    heads = ["Motion", "Mean", "Standard deviation", "Least", "Largest"]
+    heads = ["Motion", "Mean", "Standard deviation", "Minimum", "Maximum"]
     columns = [values.mean(axis=0), values.std(axis=0), values.min(axis=0), values.max(axis=0)]
     if wave is not None:
         heads += [f"Amplitude at {wave[1]:g} s", "per m of wave amplitude"]

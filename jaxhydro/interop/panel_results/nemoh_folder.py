@@ -87,9 +87,9 @@ def _files(folder: Path) -> dict[str, Path]:
     """Files of a case by name, the known ones spelled as Nemoh spells them."""
     spelled = {name.lower(): name for name in (RADIATION, FORCE, STIFFNESS, STATICS, *OTHERS)}
     parts = [folder, *(path for path in sorted(folder.iterdir()) if path.is_dir() and path.name.lower() in PARTS)]
-    found: dict[str, Path] = {}
+    files: dict[str, Path] = {}
     for part in parts:
         for path in sorted(part.iterdir()):
             if path.is_file() and path.name.lower() in spelled:
-                found.setdefault(spelled[path.name.lower()], path)
-    return found
+                files.setdefault(spelled[path.name.lower()], path)
+    return files

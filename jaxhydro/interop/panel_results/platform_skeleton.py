@@ -115,26 +115,26 @@ def _section(mass: float, centre: Float[np.ndarray, "3"], inertia: Float[np.ndar
     entries = {
         f"I{a}{b}": inertia[i, j] for (i, a), (j, b) in ((p, q) for p in enumerate("xyz") for q in enumerate("xyz")) if i <= j
     }
-    kept = {
+    sizable = {
         key: tidy(value) for key, value in entries.items() if key[1] == key[2] or abs(value) > MIN_SHARE * np.trace(inertia)
     }
-    ordered = {key: kept[key] for key in ("Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz") if key in kept}
+    ordered = {key: sizable[key] for key in ("Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz") if key in sizable}
     return {"mass": tidy(mass), "centre_of_mass": [tidy(x) for x in centre], "inertia": ordered}
 
 
 def _matrices(case: PanelCase) -> dict[str, Any]:
     """Damping and stiffness that stand beside the tables."""
-    found: dict[str, Any] = {}
+    sections: dict[str, Any] = {}
     if case.linear is not None and case.linear.any():
-        found["linear_damping"] = matrix_entries("B", 0.5 * (case.linear + case.linear.T))
+        sections["linear_damping"] = matrix_entries("B", 0.5 * (case.linear + case.linear.T))
         case.say("external damping", Treatment.TAKEN, "`linear_damping`.")
     if case.quadratic is not None and case.quadratic.any():
         diagonal = np.diag(np.diag(case.quadratic))
-        found["quadratic_damping"] = matrix_entries("B", diagonal)
+        sections["quadratic_damping"] = matrix_entries("B", diagonal)
         whole = np.array_equal(diagonal, case.quadratic)
         text = "`quadratic_damping`." if whole else "`quadratic_damping` of the diagonal; couplings are left out."
         case.say("external quadratic damping", Treatment.TAKEN if whole else Treatment.APPROXIMATED, text)
-    return found | {"mooring": _mooring(case)}
+    return sections | {"mooring": _mooring(case)}
 
 
 def _mooring(case: PanelCase) -> dict[str, Any]:

@@ -56,11 +56,11 @@ def add_tables(case: PanelCase, folder: Path, root: str | None, length: float, b
     Raises:
         InputError: A table is broken, there are several, or there is neither radiation nor excitation.
     """
-    found = {ending: path for ending in ENDINGS if (path := with_ending(folder, ending, root))}
-    if not {".1", ".3"} & set(found):
+    tables = {ending: path for ending in ENDINGS if (path := with_ending(folder, ending, root))}
+    if not {".1", ".3"} & set(tables):
         expected = "WAMIT's tables of radiation (.1) or wave forces (.3)"
         raise InputError(str(folder), [Problem("", expected, f"neither{f' of {root}' if root else ''}")])
-    case.name = case.name or next(path.stem for path in found.values())
+    case.name = case.name or next(path.stem for path in tables.values())
     density, gravity = case.water()
     options: dict[str, Any] = ({"length": length} if length != 1.0 else {}) | ({"by": by} if by != "period" else {})
 
@@ -68,22 +68,22 @@ def add_tables(case: PanelCase, folder: Path, root: str | None, length: float, b
         case.files[path.name] = path
         return {"file": path.name} | {key: value for key, value in options.items() if key not in more.get("without", ())}
 
-    if path := found.get(".1"):
+    if path := tables.get(".1"):
         case.coefficients = read_wamit(path, density, length, by)
         case.keys["radiation"] = entry(path)
         case.say(
             path.name, Treatment.TAKEN, f"`radiation`: added mass and damping at {len(case.coefficients.omega)} frequencies."
         )
-    if path := found.get(".3"):
+    if path := tables.get(".3"):
         table = read_directional_excitation(path, density, gravity, length=length, by=by)
         knots = table.by_heading.heading
         case.force = table.towards(float(knots[0]))
         case.keys["excitation"] = entry(path)
         case.say(path.name, Treatment.TAKEN, f"`excitation`: first-order wave forces; headings: {knots.size}.")
-    if path := found.get(".12d"):
+    if path := tables.get(".12d"):
         case.keys["drift"] = entry(path)
         case.say(path.name, Treatment.TAKEN, "`drift`: forces at difference frequencies, all pairs of frequencies.")
-    if (path := found.get(".hst")) and "hydrostatics" not in case.keys:
+    if (path := tables.get(".hst")) and "hydrostatics" not in case.keys:
         read_hydrostatics(path, density, gravity, length=length)
         case.keys["hydrostatics"] = entry(path, without=("by",)) | {"weight": "included", "linear": True}
         text = "`hydrostatics`: C33, C44, C55 and their couplings. C44 and C55 are taken to include the weight, as WAMIT's do."
