@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.eliminated_least_squares import predict_gain
 from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.linearisations import RELATIVE_FLOOR, Prior
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
+from calibration.discovery.score_covariance import deviations_of, dispersion_of, parameter_covariance
 from calibration.discovery.study import Study
 from calibration.identifiability.information import pseudo_inverse
 
@@ -137,9 +137,12 @@ def assess_effect(
     Returns:
         The verdict, with the reason where the effect is rejected.
     """
-    bic = float((before.likelihood - after.likelihood)[study.used].sum()) - len(candidate.labels) * math.log(count)
+    dispersion = dispersion_of(study, after.linearisation, prior)
+    gain = float((before.likelihood - after.likelihood)[study.used].sum()) / dispersion
+    bic = gain - len(candidate.labels) * math.log(count)
     held, told = grounds.error_reduction()
-    net, clear, matters = grounds.likelihood_gain, significance(study, candidate, after, prior), grounds.relevance()
+    net, clear = grounds.likelihood_gain / dispersion, significance(study, candidate, after, prior)
+    matters = grounds.relevance()
     values = {label: study.value(label, after.linearisation.point.x) for label in candidate.positive}
     wrong = [label for label, value in values.items() if value < 0 and is_significant(study, label, candidate, after, prior)]
     where = ComparedData.HELD_OUT if grounds.study is study else ComparedData.BLOCKS
@@ -223,7 +226,7 @@ def is_significant(study: Study, label: str, candidate: Candidate, state: FitSta
     """
     i = study.names.index(label)
     linearisation = state.linearisation
-    deviation = float(predict_gain(study, linearisation, prior).deviation[linearisation.active.index(i)])
+    deviation = float(deviations_of(study, linearisation, prior)[linearisation.active.index(i)])
     return len(candidate.amplitudes) == 1 or abs(float(study.steps(linearisation.point.x)[i])) > 2 * deviation
 
 
@@ -234,7 +237,7 @@ def significance(study: Study, candidate: Candidate, state: FitState, prior: Pri
     """
     linearisation = state.linearisation
     columns = [linearisation.active.index(i) for i in study.index(candidate.amplitudes)]
-    covariance = predict_gain(study, linearisation, prior).covariance[np.ix_(columns, columns)]
+    covariance = parameter_covariance(study, linearisation, prior)[np.ix_(columns, columns)]
     steps = study.steps(linearisation.point.x)[study.index(candidate.amplitudes)]
     wald = float(steps @ pseudo_inverse(covariance) @ steps)
     return math.sqrt(max(wald - len(columns) + 1, 0.0))

@@ -11,9 +11,9 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
 from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import with_candidates, with_effects
-from calibration.discovery.eliminated_least_squares import predict_gain
 from calibration.discovery.fit_state import FitState
 from calibration.discovery.linearisations import Point
+from calibration.discovery.score_covariance import deviations_of
 from calibration.residuals.measured_seas import peak_period
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from jaxhydro.analysis.sea_statistics import bands_of
@@ -38,7 +38,7 @@ def estimates_of(fits: EffectFits, state: FitState, names: Sequence[str]) -> dic
     """Estimates with standard deviations of directions that are one parameter each."""
     linearisation, study = state.linearisation, fits.study
     prior = fits.prior(state.chosen)
-    deviations = predict_gain(study, linearisation, prior).deviation
+    deviations = deviations_of(study, linearisation, prior)
     values = {}
     for name in names:
         i = study.names.index(name)

@@ -5,8 +5,9 @@ import math
 import numpy as np
 
 from calibration.discovery.acceptance import MIN_BIC_GAIN, MIN_HELD_OUT_GAIN, MIN_SIGNIFICANCE
-from calibration.discovery.eliminated_least_squares import predict_gain, prior_residuals
+from calibration.discovery.eliminated_least_squares import prior_residuals
 from calibration.discovery.fit_state import FitState
+from calibration.discovery.score_covariance import deviations_of
 from calibration.discovery.search import AcceptedEffect, Search
 
 MASS_DEVIATIONS_ALLOWED = 2.0  # standard deviations by which weighed mass properties may be off
@@ -34,9 +35,7 @@ def with_mass_properties(search: Search, state: FitState) -> FitState:
     chosen = (*state.chosen, candidate)
     after = fits.refit_from(state, chosen, "mass properties let go", 0.98)
     prior = fits.prior(chosen)
-    deviation = predict_gain(fits.study, after.linearisation, prior).deviation[
-        [after.linearisation.active.index(i) for i in mine]
-    ]
+    deviation = deviations_of(fits.study, after.linearisation, prior)[[after.linearisation.active.index(i) for i in mine]]
     far = (np.abs(fits.study.steps(after.linearisation.point.x)[mine]) - MASS_DEVIATIONS_ALLOWED * width) / deviation
     squares = [
         float((prior_residuals(fits.study, fitted.linearisation.point, by)[0][mine] ** 2).sum())

@@ -16,8 +16,8 @@ import numpy as np
 
 from calibration.discovery.diagnosis import Prediction
 from calibration.discovery.effect_fits import EffectFits
-from calibration.discovery.eliminated_least_squares import predict_gain
 from calibration.discovery.fit_state import FitState
+from calibration.discovery.score_covariance import parameter_covariance
 from calibration.result import TestFit
 from jaxhydro.environment import DOFS
 
@@ -35,7 +35,7 @@ def predictions_of(fits: EffectFits, state: FitState, tests: Sequence[TestFit]) 
     held = [(test, series) for test in tests if test.use == "holdout" for series in test.series if series.scored]
     if not held:
         return ()
-    covariance = predict_gain(fits.study, state.linearisation, fits.prior(state.chosen)).covariance
+    covariance = parameter_covariance(fits.study, state.linearisation, fits.prior(state.chosen))
     slopes, errors = motion_slopes(fits, state), relative_errors(tests)
     predictions = []
     for test, series in held:

@@ -113,7 +113,9 @@ def set_up_study(
     variance = max((float(np.var(r.wave)) for r in waves if r.wave is not None), default=1.0)
     step = sea_step(baseline, options) if waves else 0.0
     scales = noticeable_scales(mass, stiffness, motions)
-    candidates, scaled, units = catalogue(baseline, scales, bool(waves), variance, step)
+    seas = Seas.of(campaign.records, options.low, options.cutoff)
+    peak_period = 0.0 if seas is None else seas.peak_period
+    candidates, scaled, units = catalogue(baseline, scales, bool(waves), variance, step, peak_period)
     if not stiffness[2, 2] > MIN_HEAVE_STIFFNESS * float(baseline.body.mass * baseline.environment.gravity):
         # nothing holds up the weight of more mass: there would be no equilibrium
         candidates = [
@@ -198,8 +200,7 @@ def set_up_study(
         for candidate in candidates
         if not set(candidate.amplitudes) <= set(nuisances) or candidate.effect in kept_effects
     ]
-    stated, seas = campaign.manifest.plausible, Seas.of(campaign.records, options.low, options.cutoff)
-    plausible = plausible_sizes(baseline, candidates, scales, seas, stated, source)
+    plausible = plausible_sizes(baseline, candidates, scales, seas, campaign.manifest.plausible, source)
     reach = {
         label: (np.array([size_range.lower, size_range.upper]) - scaled[label].start) / units[label]
         for label, size_range in plausible.items()
@@ -217,6 +218,8 @@ def set_up_study(
             shaped = isinstance(scaled[label].transform, LogInterval)
             direction(label, {label: 1.0}, 0.0, 0.7 if shaped else 3.0)
     limits = np.tile([-np.inf, np.inf], (len(names), 1))
+    shapes = {label: ends for candidate in candidates for label, ends in candidate.shape_limits.items()}
+    reach |= {label: (np.array(ends) - scaled[label].start) / units[label] for label, ends in shapes.items()}
     for label, span in reach.items():
         limits[names.index(label)] = np.sort(span)
     study = replace(study_of(model, space, names, np.array(rows), campaign, options, width), size_limits=limits)

@@ -40,7 +40,8 @@ def linear_model(columns: int, truth: dict[int, float], seed: int = 1, noise: fl
     freedom = np.full(POOLS, float(ROWS // POOLS))
     wide, none, share = np.full(columns, 10.0), np.zeros(columns), np.full(ROWS, POOLS / ROWS)
     low, high = none - 1e3, none + 1e3
-    return LinearModel(slopes, residual, tuple(decays), pool, share, freedom, none, wide, low, high, none, none == 0)
+    group = np.arange(ROWS)
+    return LinearModel(slopes, residual, tuple(decays), pool, share, freedom, none, wide, low, high, none, none == 0, group)
 
 
 def test_a_fit_is_the_minimum_of_likelihood_and_priors_found_by_another_method() -> None:

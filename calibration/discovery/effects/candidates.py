@@ -58,6 +58,7 @@ class Candidate:
         amplitudes: Labels of parameters that are neutral where the effect is absent.
         shapes: Labels of parameters without meaning at the neutral value; they are freed with the effect.
         grid: Values of shapes or discrete choices that are tried.
+        shape_limits: Smallest and largest plausible value of shapes by label. Values of the grid beyond them only give slopes.
         shape_finder: Finds further shapes to try, from a linearisation and the slopes along the first amplitude.
         positive: Amplitudes that physics requires to be positive.
         starting_values_finder: Finds values where a fit begins too, of coefficients as well, from the decays.
@@ -73,6 +74,7 @@ class Candidate:
     amplitudes: tuple[str, ...]
     shapes: tuple[str, ...] = ()
     grid: tuple[Mapping[str, float], ...] = ()
+    shape_limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     shape_finder: ShapeFinder | None = None
     positive: tuple[str, ...] = ()
     starting_values_finder: StartingValuesFinder | None = None
@@ -96,6 +98,10 @@ class Candidate:
     def choices(self) -> tuple[str, ...]:
         """Labels of discrete choices, which no fit moves."""
         return tuple(dict.fromkeys(label for values in self.grid for label in values if label not in self.shapes))
+
+    def is_plausible_at(self, values: Mapping[str, float]) -> bool:
+        """Whether shapes are within their limits at some values."""
+        return all(low <= values.get(label, low) <= high for label, (low, high) in self.shape_limits.items())
 
     @property
     def name(self) -> str:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 
@@ -31,11 +32,18 @@ from jaxhydro.waves.dispersion import wavenumber
 
 REFERENCE_LENGTH = 27.0  # m, of a platform of 20 000 t
 SLOW_MOTION_CUTOFFS = (0.03, 0.015, 0.06)  # Hz: motion is slow below; tried in turn
+# peak periods. Waves travel half a wavelength in one, at their group velocity: no beach is within that distance of the platform
+MIN_REFLECTION_DELAY = 2.0
 NOTICEABLE_SHARE = 0.1  # noticeable fraction of computed radiation or drift
 
 
 def catalogue(
-    model: Model, scales: Mapping[str, NoticeableScales], waves: bool, wave_variance: float, step: float = 0.0
+    model: Model,
+    scales: Mapping[str, NoticeableScales],
+    waves: bool,
+    wave_variance: float,
+    step: float = 0.0,
+    peak_period: float = 0.0,
 ) -> tuple[list[Candidate], dict[str, FreeParameter], dict[str, float]]:
     """Candidate effects for a model and the motions that were tested.
 
@@ -47,6 +55,7 @@ def catalogue(
         waves: Whether there are tests in waves.
         wave_variance: Largest variance of the wave elevation (m²).
         step: Time step of simulations in waves (s), which limits the periods of candidates.
+        peak_period: Peak period of the waves (s), which limits the delay of reflected ones.
 
     Returns:
         The candidates, their parameters by label, and noticeable sizes by label.
@@ -62,7 +71,7 @@ def catalogue(
     _of_strips(builder, model, waves)
     if waves:
         _of_gauges(builder)
-        _of_the_basin(builder)
+        _of_the_basin(builder, peak_period)
     return builder.candidates, builder.free, builder.noticeable
 
 
@@ -210,8 +219,9 @@ def _of_gauges(builder: CatalogueBuilder) -> None:
     )
 
 
-def _of_the_basin(builder: CatalogueBuilder) -> None:
+def _of_the_basin(builder: CatalogueBuilder, peak_period: float) -> None:
     """Add reflected waves; the gauge may have measured them or not."""
+    least = MIN_REFLECTION_DELAY * peak_period
     builder.add_linear(SEEN, 1.0)
     builder.add(
         "wave_reflection",
@@ -219,7 +229,8 @@ def _of_the_basin(builder: CatalogueBuilder) -> None:
         [builder.add_linear(COEFFICIENT, 0.02)],
         shapes=(builder.add_linear(DELAY, MAX_DELAY / 3, DEFAULT_DELAY),),
         grid=ZERO_DELAY_GRID,
-        shape_finder=reflection_delays,
+        shape_limits={DELAY: (least, MAX_DELAY)},
+        shape_finder=partial(reflection_delays, least=least),
         telling="a few regular waves that stop: what comes after them, at a row of gauges",
         source=WaveReflection.source,
     )

@@ -15,7 +15,9 @@ DELAY_SPACING = 0.05  # s, between the delays that are compared
 ZERO_DELAY_GRID: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: measured} for measured in (0.0, 1.0))
 
 
-def reflection_delays(study: Study, linearisation: Linearisation, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
+def reflection_delays(
+    study: Study, linearisation: Linearisation, slopes: np.ndarray, least: float
+) -> tuple[Mapping[str, float], ...]:
     """The likeliest delays (s) for `WaveReflection`.
 
     Slopes at no delay, shifted in time, are correlated with the residual at frequencies of first-order waves. In a linear
@@ -25,8 +27,9 @@ def reflection_delays(study: Study, linearisation: Linearisation, slopes: np.nda
         study: The study.
         linearisation: Linearisation with the residual.
         slopes: Slopes at no delay, in rows (n,).
+        least: Shortest plausible delay (s).
     """
-    later = np.arange(0.0, MAX_DELAY, DELAY_SPACING)
+    later = np.arange(least, MAX_DELAY, DELAY_SPACING)
     weight = row_weights(study, linearisation.residual) * study.used[study.row_series]
     product, power, begin = np.zeros(later.size), 0.0, sum(2 * len(cut.take) for cut in study.cuts[: -len(study.seas)])
     for record, cut in zip(study.seas, study.cuts[-len(study.seas) :]):

@@ -184,7 +184,8 @@ class _Columns:
             numbers = dict(zip(along.active, self.append(along.slopes, list(along.active)), strict=True))
             for candidate, values in members:
                 amplitudes = study.index(candidate.amplitudes)
-                self.add(candidate, [active.index(i) if i in active else numbers[i] for i in amplitudes], values)
+                if candidate.is_plausible_at(values):
+                    self.add(candidate, [active.index(i) if i in active else numbers[i] for i in amplitudes], values)
                 if candidate.shape_finder is not None and values in (candidate.grid or ({},)):
                     first = along.slopes[:, along.active.index(amplitudes[0])]
                     further += [

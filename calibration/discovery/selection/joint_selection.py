@@ -1,8 +1,8 @@
 """Selection of effects: subsets of candidates compared by their evidence on a linearised model.
 
 The best subsets are found best first: from every one of the few best, effects are added, removed and exchanged. The posterior
-probability of a subset is its evidence times its prior. The likelihood is tempered by the best subset's residual above the
-noise (coarsened posterior).
+probability of a subset is its evidence times its prior. The likelihood is tempered where the best subset leaves more than
+noise (coarsened posterior; by how much: `dispersion`).
 
 Two kinds of subsets are left out:
 
@@ -21,6 +21,7 @@ from itertools import chain, islice, takewhile
 import numpy as np
 
 from calibration.discovery.selection.bounded_quadratic import bounded_minimum
+from calibration.discovery.selection.dispersion import dispersion
 from calibration.discovery.selection.linear_model import LinearModel
 from calibration.discovery.selection.subsets import Selection, Subset, Variant, bagged_posterior
 from calibration.identifiability.information import pseudo_inverse
@@ -33,7 +34,6 @@ MAX_EXCHANGES = 3  # effects tried in the place of each effect of a subset
 MAX_EFFECTS = 8  # of a subset: nobody can test more one by one
 MIN_LOG_POSTERIOR = -30.0  # of a subset, over the best: less is no part of the answer
 EXPLAINED_ROUNDING = 1e-9  # of a column's square: what other columns leave of it is rounding
-MIN_DISCREPANCY = 1.2  # a smaller one may be noise by chance
 
 
 class JointSelection:
@@ -196,10 +196,9 @@ class JointSelection:
         return subset
 
     def temper(self, best: Subset) -> None:
-        """Temper the likelihood by a subset's residual above the noise."""
-        discrepancy = self.model.discrepancy(self.model.residual_after(best.fit))
-        if discrepancy > MIN_DISCREPANCY:
-            self.model, self.fitted, self.judged = self.model.tempered(discrepancy), {}, {}
+        """Temper the likelihood where a subset leaves more than noise."""
+        if (factor := dispersion(self.model, best.fit)) > 1:
+            self.model, self.fitted, self.judged = self.model.tempered(factor), {}, {}
 
     def has_required(self, subset: Subset) -> bool:
         """Whether a subset has every required effect."""

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
+from calibration.discovery.score_covariance import discrepancy_of
 from calibration.discovery.selection.bounded_quadratic import RIDGE, bounded_minimum
 from calibration.discovery.selection.pooled_products import OwnUnknowns, PooledProducts, WeightedSums
 
@@ -71,6 +72,7 @@ class LinearModel:
         upper: Highest steps (k,).
         neutral: Steps to where columns have no effect (k,); columns that are not fitted are there.
         ends: Which columns have the ends of a plausible range as bounds (k,).
+        group: Group of every row (n,), whose errors are alike. See `score_covariance`.
     """
 
     slopes: np.ndarray
@@ -85,6 +87,7 @@ class LinearModel:
     upper: np.ndarray
     neutral: np.ndarray
     ends: np.ndarray
+    group: np.ndarray
 
     @cached_property
     def products(self) -> PooledProducts:
@@ -223,17 +226,12 @@ class LinearModel:
         return bool((fit.at_bound & self.ends[columns] & (np.abs(fit.step - self.neutral[columns]) > 1e-12)).any())
 
     def discrepancy(self, residual: np.ndarray) -> float:
-        """Number of degrees of freedom of a residual that count as one.
+        """Geometric mean of a residual's root mean square over the floor's, at least 1."""
+        return discrepancy_of(self.levels(residual), self.freedom)
 
-        It is the geometric mean of the residual's root mean square over the floor's, and at least 1. A residual above the noise
-        is the model's own error, and is alike in all records. Its samples therefore count as fewer independent observations.
-        """
-        logarithm = np.log(np.maximum(self.levels(residual), 1.0))
-        return math.exp(0.5 * float((self.freedom * logarithm).sum()) / max(float(self.freedom.sum()), 1.0))
-
-    def tempered(self, discrepancy: float) -> "LinearModel":
+    def tempered(self, dispersion: float) -> "LinearModel":
         """The model with fewer degrees of freedom, by a factor."""
-        return self.with_freedom(self.freedom / discrepancy)
+        return self.with_freedom(self.freedom / dispersion)
 
     @cached_property
     def used(self) -> np.ndarray:

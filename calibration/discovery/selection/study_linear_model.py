@@ -6,6 +6,7 @@ import numpy as np
 
 from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.linearisations import Linearisation
+from calibration.discovery.score_covariance import score_groups
 from calibration.discovery.selection.linear_model import LinearModel
 from calibration.discovery.selection.pooled_products import OwnUnknowns
 from calibration.discovery.study import Study
@@ -56,6 +57,7 @@ def linear_model(fits: EffectFits, linearisation: Linearisation, slopes: np.ndar
         high,
         np.where(sized, -now, 0.0),
         sized | further,
+        score_groups(study),
     )
 
 
