@@ -11,6 +11,7 @@ from calibration.discovery.diagnosis import Diagnosis, Outcome
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words
 from calibration.report import tables as calibrations
+from calibration.report.effect_alternatives import effect_in_three_lines
 from calibration.residuals.measured_seas import Diverged
 from calibration.results.diagnosis_file import DiagnosisFile, read_diagnosis
 from calibration.results.result_folder import DIAGNOSIS_FILE
@@ -107,7 +108,7 @@ def show_diagnosis(saved: DiagnosisFile, notes: list[str]) -> None:
         say(f"Note: {note}")
     say(f"\n{words.verdict_sentence(saved)}", "bold")
     for effect in saved.missing.effects:
-        for line in words.effect_in_three_lines(saved, effect):
+        for line in effect_in_three_lines(saved, effect):
             say(line)
     say(words.describe_unexplained(saved))
     for force in saved.missing.unexplained.forces:

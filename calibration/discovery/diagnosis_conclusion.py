@@ -19,12 +19,14 @@ from calibration.discovery.latent_force.recover_force import latent_of
 from calibration.discovery.predictions import predictions_of
 from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE, WAVE_ORDER, Effect, Evidence, PlausibleRange
 from calibration.discovery.residual_anatomy import anatomy, signature
+from calibration.discovery.score_covariance import parameter_covariance
 from calibration.discovery.search import Search
 from calibration.fitting.fit_conclusion import records_not_followed
 
 # of a motion: a larger residual, above twice the noise, is unexplained. Fitted seas of synthetic campaigns with nothing missing
 # leave up to 0.04
 MAX_RESIDUAL_SHARE = {"decay": 0.03, "waves": 0.05}
+MIN_CORRELATION = 0.9  # of two effects' sizes that trade against each other
 END_SHARE = 0.005  # of a plausible range: a size that is nearer to an end is at the end
 
 
@@ -155,7 +157,32 @@ def accepted_effect(search: Search, candidate: Candidate, after: FitState, doubt
         candidate.telling or None,
         doubt,
         plausible_ranges(fits, candidate, after),
+        correlated_effects(fits, candidate, after),
     )
+
+
+def correlated_effects(fits: EffectFits, candidate: Candidate, state: FitState) -> dict[str, float]:
+    """Other effects in a fit whose sizes trade against an effect's, with the correlation of the two amplitudes that do most.
+
+    Args:
+        fits: Study, candidates, priors.
+        candidate: The effect.
+        state: The fit.
+    """
+    covariance = parameter_covariance(fits.study, state.linearisation, fits.prior(state.chosen))
+    deviation = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    correlation = covariance / np.outer(deviation, deviation)
+
+    def columns(effect: Candidate) -> list[int]:
+        return [state.linearisation.active.index(i) for i in fits.study.index(effect.amplitudes)]
+
+    trades = {}
+    for other in state.chosen:
+        between = correlation[np.ix_(columns(candidate), columns(other))].ravel()
+        most = float(between[np.argmax(np.abs(between))])
+        if other is not candidate and abs(most) > MIN_CORRELATION:
+            trades[other.name] = round(most, 3)
+    return trades
 
 
 def plausible_ranges(fits: EffectFits, candidate: Candidate, state: FitState) -> dict[str, PlausibleRange]:

@@ -134,7 +134,7 @@ def unexplained_note(chosen: Sequence[Candidate], more: Sequence[MotionResidual]
     added = names[0] if len(names) == 1 else f"all {len(names)} effects"
     return (
         f"with {added} in the model, {percent(worst.relative)} of {worst.channel} is left in {worst.test}. Something else "
-        "acts instead, or as well. Sizes are less sure than their deviations say"
+        "acts instead, or as well"
     )
 
 

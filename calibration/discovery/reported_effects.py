@@ -71,6 +71,7 @@ class Effect:
         in_doubt: A rejected effect that explains more beside it, `HELD_OUT_ERROR`, `IMPLAUSIBLE_SIZE` or `WAVE_ORDER`; None:
             no doubt.
         plausible: Plausible ranges of its amplitudes by label.
+        trades_against: Correlation of its size with that of other effects found, by their names, where it is close to 1 or -1.
     """
 
     effect: str
@@ -84,3 +85,4 @@ class Effect:
     telling_test: str | None
     in_doubt: str | None = None
     plausible: Mapping[str, PlausibleRange] = field(default_factory=dict)
+    trades_against: Mapping[str, float] = field(default_factory=dict)

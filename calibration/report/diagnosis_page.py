@@ -5,6 +5,7 @@ from pathlib import Path
 
 from calibration.formatting import counted, number
 from calibration.report import diagnosis_tables, diagnosis_words
+from calibration.report.effect_alternatives import describe_alternatives
 from calibration.report.interactive import motion_view
 from calibration.report.web_page import Image, images, inputs_table, render, written_on
 from calibration.results.diagnosis_file import DiagnosisFile
@@ -32,6 +33,7 @@ def page(saved: DiagnosisFile, folder: Path) -> str:
         saved=saved,
         tables=diagnosis_tables,
         words=diagnosis_words,
+        describe_alternatives=describe_alternatives,
         measured=_measured(saved),
         notes=[("", [*saved.notes, *spent])] if saved.notes or spent else [],
         images=_placed(saved, folder),

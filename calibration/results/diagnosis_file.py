@@ -50,6 +50,7 @@ class FoundEffect(ResultModel):
     test_that_would_tell: str | None = None
     in_doubt: str | None = None
     plausible: dict[str, PlausibleSizeRange] = Field(default_factory=dict)
+    trades_against: dict[str, Number] = Field(default_factory=dict)
 
 
 class RejectedEffect(ResultModel):

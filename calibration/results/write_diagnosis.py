@@ -134,6 +134,7 @@ def _effect(effect: Effect) -> FoundEffect:
         test_that_would_tell=effect.telling_test,
         **stated(in_doubt=effect.in_doubt),
         plausible={short(label): PlausibleSizeRange(**asdict(size)) for label, size in effect.plausible.items()},
+        trades_against=dict(effect.trades_against),
     )
 
 

@@ -21,6 +21,7 @@ from calibration.discovery.reported_effects import IMPLAUSIBLE_SIZE, PlausibleRa
 from calibration.plots import diagnosis_figures as plots
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words
+from calibration.report.effect_alternatives import describe_alternatives, effect_in_three_lines
 from calibration.report.write_report import write_report
 from calibration.results.calibration_file import Parameter
 from calibration.results.diagnosis_file import read_diagnosis
@@ -130,20 +131,20 @@ def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> 
         saved = read_diagnosis(tmp_path / verdict)
         assert words.verdict_sentence(saved).startswith(start)
         assert " Coulomb friction in surge may stand for " in words.verdict_sentence(saved)
-        sentence = words.describe_alternatives(saved.missing.effects[-1])
+        sentence = describe_alternatives(saved.missing.effects[-1])
         assert sentence.startswith("Amplitude dependent drag explains more of the fitted tests beside it than it does, and is")
         assert sentence in Page(write_report(tmp_path / verdict).read_text()).text
         raising = saved.missing.effects[-1].model_copy(update={"in_doubt": "held_out_error"})
-        assert words.describe_alternatives(raising).startswith("With all that was found in the model, the tests that were not")
+        assert describe_alternatives(raising).startswith("With all that was found in the model, the tests that were not")
         lacking = saved.missing.effects[-1].model_copy(update={"in_doubt": "wave_order"})
-        assert words.describe_alternatives(lacking).startswith("The model is driven with the second-order waves of theory")
+        assert describe_alternatives(lacking).startswith("The model is driven with the second-order waves of theory")
         unordered = saved.missing.model_copy(update={"effects": [*saved.missing.effects[:-1], lacking]})
         verdict = words.verdict_sentence(saved.model_copy(update={"missing": unordered}))
         assert verdict == f"{words.WAVES_FIRST} {words.verdict_sentence(saved)}"
+        trading = saved.missing.effects[-1].model_copy(update={"trades_against": {"sensor_lag": -0.974}})
+        assert "Its size trades against that of a sensor lag (correlation -0.97)" in (describe_alternatives(trading))
         if current in effects:
-            assert words.describe_alternatives(saved.missing.effects[0]).startswith(
-                "No other effect that was tried does as well."
-            )
+            assert describe_alternatives(saved.missing.effects[0]).startswith("No other effect that was tried does as well.")
 
 
 def test_a_gain_is_called_after_what_it_was_found_on(result: Diagnosis, written: Path, tmp_path: Path) -> None:
@@ -168,15 +169,15 @@ def test_the_terminal_tells_each_effect_in_three_lines(written: Path, capsys: py
     show_diagnosis(saved, [])
     lines_printed = capsys.readouterr().out.splitlines()
     for effect in saved.missing.effects:
-        lines = words.effect_in_three_lines(saved, effect)
+        lines = effect_in_three_lines(saved, effect)
         at = lines_printed.index(lines[0])
         assert [line for line in lines_printed[at : at + 3]] == list(lines)
-    first = words.effect_in_three_lines(saved, saved.missing.effects[0])
+    first = effect_in_three_lines(saved, saved.missing.effects[0])
     assert first[0].startswith("Coulomb friction in surge: force (81.0 ± ") and first[0].endswith(" kN")
     assert first[1].startswith("  How sure: probability ") and "squared error of held-out tests falls by 61 %" in first[1]
     assert first[2].startswith("  What else it could be: ")
     bare = saved.missing.effects[0].model_copy(update={"parameters": {}})
-    assert words.effect_in_three_lines(saved, bare)[0] == "Coulomb friction in surge"
+    assert effect_in_three_lines(saved, bare)[0] == "Coulomb friction in surge"
 
 
 def nothing(**changes: Any) -> Diagnosis:
@@ -256,7 +257,7 @@ def test_a_size_at_the_end_of_what_is_plausible_is_told(result: Diagnosis, tmp_p
     write_diagnosis(replace(result, effects=(at_limit, *result.effects[1:])), tmp_path)
     saved = read_diagnosis(tmp_path)
     assert saved.missing.effects[0].plausible["force"].at_end
-    sentence = words.describe_alternatives(saved.missing.effects[0])
+    sentence = describe_alternatives(saved.missing.effects[0])
     assert "at the end of what is plausible: force, plausible from 0 to 81.0 kN (engineering judgement" in sentence
     text = Page(write_report(tmp_path).read_text()).text
     assert "97 %" in text and "75 % are predicted better with it" in text and "acts like it" in text

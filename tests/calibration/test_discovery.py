@@ -332,7 +332,7 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, repor
         linearisation = SimpleNamespace(point=Point(np.array(x), None), active=(0, 1))
         return SimpleNamespace(linearisation=linearisation, chosen=chosen, likelihood=np.zeros(1))
 
-    monkeypatch.setattr(mass_properties_check, "predict_gain", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
+    monkeypatch.setattr(mass_properties_check, "deviations_of", lambda *_: np.array([0.1, deviation]))
     monkeypatch.setattr(mass_properties_check, "prior_residuals", away)
     after = state([0.1, inertia], (mass,))
     fits = SimpleNamespace(
