@@ -11,7 +11,10 @@ OTHER_STRIPS = (
     "within 1 %."
 )
 OTHER_YAW = "RAFT's design has another stiffness in yaw than the report; RAFT's own test has the same period."
-RM1 = "the nacelle's volume is not in RAFT's run; the rest is not explained yet (results-raft-designs.md)."
+RM1 = (
+    "the nacelle's volume is not in RAFT's run. RAFT takes two braces as if their upper ends were under water, and counts the "
+    "tops of the heave plates under the columns (results-raft-designs.md)."
+)
 NO_MOON_POOL = (
     "WAMIT's model of the deck covers the moon pool (NREL's forum, topic 1044): its waterplane is 1600 m², that of the panels "
     "1500 m²."

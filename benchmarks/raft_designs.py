@@ -167,8 +167,10 @@ def text(results: dict[str, Any], raft: dict[str, Any]) -> str:
                     "With them exchanged here, M44, M55 and M66 agree to 1e-11.\n"
                     "- OC4: at a step RAFT counts the inertia of the section before it twice. "
                     "That is 99.94 % of the difference in M44.\n"
-                    "- RM1_Floating: the nacelle's 38.6 m³ are not in RAFT's run. "
-                    "The other 29.5 m³, C33 and A33 are not explained yet.\n"
+                    "- RM1_Floating: the nacelle's 38.6 m³ are not in RAFT's run. Two braces that cross the surface have their upper "
+                    "end first: RAFT takes the length from there to the surface as under water (29.5 m³ less), and their "
+                    "waterplane as negative (C33). It counts the tops of the heave plates whole, under the columns too: "
+                    "219.8 t of A33.\n"
                     "- FOCTT_example: its buoyant lines come to the surface and are left out. "
                     "The row of its lines and periods is without them."
                 ),
