@@ -21,6 +21,7 @@ import numpy as np
 from calibration.discovery.eliminated_least_squares import predict_gain, row_weights
 from calibration.discovery.linearisations import Linearisation, Prior
 from calibration.discovery.study import Study
+from calibration.identifiability.information import pseudo_inverse
 
 INTERVAL_RATIO = 1.12  # of a group's highest frequency to its lowest
 MIN_DISCREPANCY = 1.2  # of a residual's root mean square to the floor's; a smaller one may be noise by chance
@@ -65,7 +66,7 @@ def without_own(columns: np.ndarray, own: Iterable[tuple[slice, np.ndarray, np.n
     """
     columns = columns.copy()
     for rows, slopes, width in own:
-        columns[rows] -= slopes @ np.linalg.solve(slopes.T @ slopes + np.diag(1 / width**2), slopes.T @ columns[rows])
+        columns[rows] -= slopes @ (pseudo_inverse(slopes.T @ slopes + np.diag(1 / width**2)) @ (slopes.T @ columns[rows]))
     return columns
 
 
@@ -103,8 +104,8 @@ def weighted_rows(study: Study, linearisation: Linearisation) -> tuple[np.ndarra
     root = np.sqrt(row_weights(study, linearisation.residual) * study.used[study.row_series])
     own = [
         (rows, root[rows, None] * linearisation.own[rows][:, free], width[free])
-        for rows, width in zip(study.spans, study.own_width, strict=True)
-        if (free := linearisation.own[rows].any(axis=0)).any()
+        for rows, width, fitted in zip(study.spans, study.own_width, study.fitted_decays, strict=True)
+        if fitted and (free := linearisation.own[rows].any(axis=0)).any()
     ]
     return without_own(root[:, None] * linearisation.slopes, own), root * linearisation.residual
 
