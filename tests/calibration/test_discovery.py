@@ -384,3 +384,16 @@ def test_every_candidate_can_be_put_into_a_model_of_the_platform():
         added = [label for label in candidate.amplitudes if label not in model.values]  # other terms are declared
         assert [float(changed.values[label]) for label in added] == [free[label].start for label in added]
         assert all(units[label] > 0 for label in candidate.amplitudes)
+
+
+def test_no_beach_is_within_half_a_wavelength_of_the_platform():
+    """A shorter delay of reflected waves only gives slopes: a fit with it would shift phases, as a clock or the gauge does."""
+    model = jh.load_model("volturnus-s")
+    mass, stiffness = (np.asarray(m) for m in linearised(model, equilibrium(model)))
+    scales = noticeable_scales(mass, stiffness, dict.fromkeys(DOFS, 0.1))
+    candidates, _, _ = catalogue(model, scales, True, 1.0, peak_period=12.0)
+    (reflection,) = [candidate for candidate in candidates if candidate.effect == "wave_reflection"]
+    delay = "wave_reflection.delay"
+    assert reflection.shape_limits[delay][0] == 24.0
+    assert [reflection.is_plausible_at({delay: value}) for value in (0.0, 23.9, 24.1, 90.0)] == [False, False, True, True]
+    assert all(candidate.is_plausible_at({}) for candidate in candidates)
