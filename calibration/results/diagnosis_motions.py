@@ -2,44 +2,60 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.result import BandError, Calibration, Series, TestFit
-from calibration.results.tests_dataset import dataset
+from calibration.results.tests_dataset import motions_of_tests
+from jaxhydro.netcdf_file import DataSet
 from jaxhydro.units import for_people
 
+if TYPE_CHECKING:
+    import xarray as xr
 
-def motions(diagnosis: Diagnosis, compared: Calibration) -> xr.Dataset:
+LONG_NAMES = {"simulated": "motion of the model with what was found missing", "before": "motion of the baseline"}
+HALF_WIDTH = "half the width of the band in which 95 % of a held-out test's samples are expected"
+
+
+def motions(diagnosis: Diagnosis, compared: Calibration) -> "xr.Dataset":
+    """`motions_with_effects` as an xarray data set."""
+    import xarray as xr  # where it is used: what is written alone does without
+
+    return xr.Dataset(*motions_with_effects(diagnosis, compared))
+
+
+def motions_with_effects(diagnosis: Diagnosis, compared: Calibration) -> DataSet:
     """Content of simulated.nc: motions measured, and simulated without and with the effects found.
 
-    Motions are in m and deg.
+    Motions are in m and deg. Half the widths of the predictions' bands are beside them.
 
     Args:
         diagnosis: The diagnosis.
         compared: The two fits, `paired`.
     """
-    motion = dataset(compared)
-    motion.attrs["title"] = f"Diagnosis of {diagnosis.campaign}"
-    motion["simulated"].attrs["long_name"] = "motion of the model with what was found missing"
-    motion["before"].attrs["long_name"] = "motion of the baseline"
-    return with_bands(motion, diagnosis) if diagnosis.predictions else motion
+    data = motions_of_tests(compared)
+    variables = dict(data.variables)
+    for name, words in LONG_NAMES.items():
+        dimensions, values, about = variables[name]
+        variables[name] = (dimensions, values, {**about, "long_name": words})
+    if diagnosis.predictions:
+        dimensions, values, about = variables["simulated"]
+        variables["half_width"] = (dimensions, _half_widths(data, diagnosis), {**about, "long_name": HALF_WIDTH})
+    return data._replace(variables=variables, attributes={**data.attributes, "title": f"Diagnosis of {diagnosis.campaign}"})
 
 
-def with_bands(motion: xr.Dataset, diagnosis: Diagnosis) -> xr.Dataset:
-    """Motions of the tests, with half the widths of the predictions' bands beside them."""
-    widths = xr.full_like(motion["simulated"], np.nan)
+def _half_widths(data: DataSet, diagnosis: Diagnosis) -> np.ndarray:
+    """Half the widths of the predictions' bands, (test, channel, time); nan where there is no prediction."""
+    axis, tests, channels = (data.coordinates[name][1] for name in ("time", "test", "channel"))
+    widths = np.full_like(data.variables["simulated"][1], np.nan)
     times = {test.id: test.time for test in diagnosis.augmented.tests}
     for prediction in diagnosis.predictions:
-        time = times[prediction.test]
+        time, row = times[prediction.test], (list(tests).index(prediction.test), list(channels).index(prediction.channel))
         half_width = for_people(prediction.channel, prediction.half_width)
-        widths.loc[{"test": prediction.test, "channel": prediction.channel}] = np.interp(
-            motion["time"], time - time[0], half_width, left=np.nan, right=np.nan
-        )
-    widths.attrs["long_name"] = "half the width of the band in which 95 % of a held-out test's samples are expected"
-    return motion.assign(half_width=widths)
+        widths[row] = np.interp(axis, time - time[0], half_width, left=np.nan, right=np.nan)
+    return widths
 
 
 def paired(diagnosis: Diagnosis) -> Calibration:

@@ -5,9 +5,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
-
 from jaxhydro.files import REPORT_FILE, own_report
+from jaxhydro.netcdf_file import COMPRESSION, DataSet, write_netcdf
 from jaxhydro.result_model import ResultModel
 
 RESULT_FILE, MOTION_FILE, FIGURES_FOLDER = "calibration.json", "simulated.nc", "figures"
@@ -44,14 +43,10 @@ def draw(figures: Iterable[tuple[str, str, Any]], folder: Path) -> list[Figure]:
     return drawn
 
 
-def write_motion(motion: xr.Dataset, folder: Path) -> None:
+def write_motion(motion: DataSet, folder: Path) -> None:
     """Write the series, packed, as simulated.nc."""
-    packed = {
-        name: {"zlib": True, "complevel": 4}
-        for name, variable in motion.data_vars.items()
-        if variable.ndim > 1 and variable.size
-    }
-    motion.to_netcdf(folder / MOTION_FILE, engine="h5netcdf", encoding=packed)
+    packed = [name for name, (_, values, _) in motion.variables.items() if values.ndim > 1 and values.size]
+    write_netcdf(motion, folder / MOTION_FILE, dict.fromkeys(packed, COMPRESSION))
 
 
 def outdated(folder: Path, temporary: Path, result: str = RESULT_FILE) -> Iterable[str]:

@@ -1,21 +1,31 @@
-"""Motions of all tests of a calibration as one xarray data set."""
+"""Motions of all tests of a calibration as one data set."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 import jaxhydro
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.hull.outline import hull_variable
+from jaxhydro.netcdf_file import DataSet
 from jaxhydro.units import for_people, unit_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _EVEN = 1e-3  # of a step: times that differ by less are the same
 
 
-def dataset(calibration: Calibration) -> xr.Dataset:
+def dataset(calibration: Calibration) -> "xr.Dataset":
+    """`motions_of_tests` as an xarray data set."""
+    import xarray as xr  # where it is used: what is written alone does without
+
+    return xr.Dataset(*motions_of_tests(calibration))
+
+
+def motions_of_tests(calibration: Calibration) -> DataSet:
     """Measured and simulated series of all tests (test, channel, time), in m and deg.
 
     Values are nan where there are none. `time` counts from every test's own start (`start_time`, on its file's axis). Tests
@@ -81,7 +91,7 @@ def dataset(calibration: Calibration) -> xr.Dataset:
         "converged": int(calibration.converged),
         "sampling": "as recorded" if alike else "interpolated linearly to the finest sampling",
     }
-    return xr.Dataset(data, coordinates, about)
+    return DataSet(data, coordinates, about)
 
 
 def common_axis(times: list[np.ndarray]) -> tuple[np.ndarray, bool]:

@@ -26,7 +26,7 @@ from calibration.results.calibration_file import (
     TestErrors,
 )
 from calibration.results.result_folder import RESULT_FILE, draw, outdated, write_motion
-from calibration.results.tests_dataset import dataset
+from calibration.results.tests_dataset import motions_of_tests
 from jaxhydro.dynamics.model import Model
 from jaxhydro.files import staged
 from jaxhydro.loads.sea_state_law import reference_of
@@ -72,7 +72,7 @@ def write_calibration(
             drawn = draw(plot.figures(calibration), temporary)
         content = document(calibration).model_copy(update={**stated(truth=truth), "figures": drawn})
         content.write(temporary / RESULT_FILE)
-        write_motion(dataset(calibration), temporary)
+        write_motion(motions_of_tests(calibration), temporary)
     return folder
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 import jaxhydro
 from calibration.campaign.signals import wave_height
@@ -32,6 +31,7 @@ from calibration.results.tests_dataset import common_axis
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.hull.outline import hull_variable
+from jaxhydro.netcdf_file import DataSet
 from jaxhydro.result_model import stated
 from jaxhydro.units import for_people, unit_of
 
@@ -62,7 +62,7 @@ def write_comparison(
             drawn = draw(seas_plot.figures(comparison.tests), temporary)
         content = content.model_copy(update={"figures": drawn})
         content.write(temporary / COMPARISON_FILE)
-        write_motion(dataset(comparison.tests, content.campaign).assign(hull_variable(comparison.hull)), temporary)
+        write_motion(_series(comparison, content.campaign), temporary)
     return content
 
 
@@ -169,12 +169,13 @@ def _about(test: SeaTest) -> SeaTestResults:
     )
 
 
-def dataset(tests: tuple[SeaTest, ...], campaign: str) -> xr.Dataset:
+def _series(comparison: Comparison, campaign: str) -> DataSet:
     """Measured and simulated motions (test, channel, time) and waves (test, time), in m and deg.
 
     Values are nan where there are none. `time` counts from where every test's comparison begins, after its transient
     (`start_time`, on its file's axis).
     """
+    tests = comparison.tests
     names = [dof for dof in DOFS if any(s.channel == dof for test in tests for s in test.fit.series)]
     times = [test.fit.time - test.fit.time[0] for test in tests]
     axis, alike = common_axis(times)
@@ -195,6 +196,7 @@ def dataset(tests: tuple[SeaTest, ...], campaign: str) -> xr.Dataset:
     data: dict[str, Any] = {
         key: (("test", "channel", "time"), motion[key], both | {"long_name": words[key]}) for key in motion
     } | {f"wave_{key}": (("test", "time"), wave[key], {"units": "m", "long_name": wave_words[key]}) for key in wave}
+    data |= hull_variable(comparison.hull)
     starts = np.array([float(test.fit.time[0]) for test in tests])
     coordinates: dict[str, Any] = {
         "time": ("time", axis, {"units": "s", "long_name": "time since the start of the comparison"}),
@@ -210,4 +212,4 @@ def dataset(tests: tuple[SeaTest, ...], campaign: str) -> xr.Dataset:
         "source": f"jaxhydro {jaxhydro.__version__}",
         "sampling": "as recorded" if alike else "interpolated linearly to the finest sampling",
     }
-    return xr.Dataset(data, coordinates, about)
+    return DataSet(data, coordinates, about)

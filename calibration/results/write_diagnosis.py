@@ -26,7 +26,7 @@ from calibration.results.diagnosis_file import (
     Residual,
     ResidualBand,
 )
-from calibration.results.diagnosis_motions import motions, paired
+from calibration.results.diagnosis_motions import motions_with_effects, paired
 from calibration.results.latent_force_file import ForceLaw, ForceRelation, ForceTerm, SavedLatentForce, Unexplained
 from calibration.results.refusal_sentences import describe_refusal
 from calibration.results.result_folder import DIAGNOSIS_FILE, draw, outdated, write_motion
@@ -64,7 +64,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: str | PathLike[str], figures: 
 
             drawn = draw(plots.figures(diagnosis, compared), temporary)
         content.model_copy(update={"figures": drawn}).write(temporary / DIAGNOSIS_FILE)
-        write_motion(motions(diagnosis, compared), temporary)
+        write_motion(motions_with_effects(diagnosis, compared), temporary)
     return folder
 
 

@@ -7,7 +7,6 @@ a step.
 from typing import NamedTuple
 
 import numpy as np
-import scipy  # scipy.signal is imported when it is used: it takes a second
 from jaxtyping import Float
 
 from jaxhydro.waves.recorded_waves import sampling_interval
@@ -61,10 +60,12 @@ def power_spectrum(
     """
     step, x = checked_record(time, x)
     count, shared, window = segment_samples(len(x), step, segment, overlap, window)
-    frequency, density = scipy.signal.welch(x, 1 / step, window, count, shared, detrend="constant")
-    weight = scipy.signal.get_window(window, count)
-    resolution = float(np.sum(weight**2) / (np.sum(weight) ** 2 * step))
-    return PowerSpectrum(frequency, density, 1 + (len(x) - count) // (count - shared), resolution)
+    taper = window_weights(window, count)
+    parts = np.lib.stride_tricks.sliding_window_view(x, count)[:: count - shared]
+    lines = np.fft.rfft((parts - parts.mean(axis=1, keepdims=True)) * taper)
+    density = (lines.real**2 + lines.imag**2).mean(axis=0) * _sides(count) * step / np.sum(taper**2)
+    resolution = float(np.sum(taper**2) / (np.sum(taper) ** 2 * step))
+    return PowerSpectrum(np.fft.rfftfreq(count, step), density, len(parts), resolution)
 
 
 def band_integral(spectrum: PowerSpectrum, low: float, high: float) -> float:
@@ -170,16 +171,35 @@ def band_weights(
     """
     _in_order(low, high)
     size, shared, name = segment_samples(count, step, segment, overlap, window)
-    taper = scipy.signal.get_window(name, size)
+    taper = window_weights(name, size)
     f = np.fft.rfftfreq(size, step)
     edges = _cell_edges(f)
     share = np.clip((np.minimum(high, edges[1:]) - np.maximum(low, edges[:-1])) / np.diff(edges), 0.0, 1.0)
-    sides = np.full(len(f), 2.0)
-    sides[[0, *([-1] if size % 2 == 0 else [])]] = 1.0
-    weight = share * (f[1] - f[0]) * sides * step / np.sum(taper**2)
+    weight = share * (f[1] - f[0]) * _sides(size) * step / np.sum(taper**2)
     inside = np.flatnonzero(weight)
     first, last = (int(inside[0]), int(inside[-1]) + 1) if len(inside) else (0, 1)
     return BandWeights(np.arange(0, count - size + 1, size - shared), taper, first, weight[first:last])
+
+
+def window_weights(name: str, count: int) -> Float[np.ndarray, " s"]:
+    """Weights of a window: `scipy.signal.get_window`, whose import takes as long as a simulation.
+
+    Args:
+        name: Name of the window.
+        count: Number of samples.
+    """
+    if name == "boxcar":
+        return np.ones(count)
+    if name == "hann":
+        return 0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, count + 1)[:-1])
+    from scipy.signal import get_window
+
+    return np.asarray(get_window(name, count))
+
+
+def _sides(count: int) -> Float[np.ndarray, " f"]:
+    """Number of frequencies, of both signs, that each line of a one-sided spectrum stands for."""
+    return np.where(np.isin(np.arange(count // 2 + 1) * 2, (0, count)), 1.0, 2.0)
 
 
 def _cell_edges(frequency: Float[np.ndarray, " f"]) -> Float[np.ndarray, " f+1"]:

@@ -9,17 +9,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from jaxhydro.analysis.sea_statistics import in_order
-from jaxhydro.display.motion_dataset import motion_dataset
 from jaxhydro.environment import DOFS
 from jaxhydro.files import REPORT_FILE, own_report, staged
 from jaxhydro.hull.hull import Hull
 from jaxhydro.hull.outline import hull_variable
 from jaxhydro.interop.outb_file import write_outb
-from jaxhydro.plots import seas as sea_plot
-from jaxhydro.plots.style import motion_figure, save, style
+from jaxhydro.netcdf_file import COMPRESSION, DataSet, write_netcdf
 from jaxhydro.units import for_people, unit_of
 
 STATISTICS = "statistics.json"
@@ -122,12 +119,11 @@ def write_motion(
         data |= hull_variable(hull)
     asked = {**(inputs or {}), **({} if sea is None else sea.about)}
     attributes = {name: value for name, value in asked.items() if value is not None}
-    dataset = xr.Dataset(data, coordinates, {"title": title, "source": source, **attributes})
+    written = DataSet(data, coordinates, {"title": title, "source": source, **attributes})
     with staged(folder, lambda temporary: _stale(folder, temporary)) as temporary:
         rows, header = np.stack(columns, axis=1), ",".join(names)
         np.savetxt(temporary / "motion.csv", rows, fmt="%.9g", delimiter=",", header=header, comments="")
-        packed = {name: {"zlib": True, "complevel": 4} for name in data}
-        dataset.to_netcdf(temporary / "simulated.nc", engine="h5netcdf", encoding=packed)
+        write_netcdf(written, temporary / "simulated.nc", dict.fromkeys(data, COMPRESSION))
         if "netcdf" in formats:
             about = {"title": f"Motion of {title}", "source": source, "platform": title, **asked}
             _write_netcdf(motion, temporary / FORMAT_FILES["netcdf"], about)
@@ -141,10 +137,12 @@ def write_motion(
 
 def _write_netcdf(motion: Motion, path: Path, about: Mapping[str, Any]) -> None:
     """Write motion.nc after the CF conventions, a variable for each motion."""
+    from jaxhydro.display.motion_dataset import motion_dataset  # with xarray, which takes long to import
+
     moved = dict(zip(DOFS, motion.values.T, strict=True))
     dataset = motion_dataset(motion.time, moved, motion.wave, about)
-    packed: dict[str, Any] = {str(name): {"zlib": True, "complevel": 4, "_FillValue": None} for name in dataset.variables}
-    dataset.to_netcdf(path, engine="h5netcdf", encoding=packed)
+    packed: dict[str, Any] = {"zlib": True, "complevel": COMPRESSION, "_FillValue": None}
+    dataset.to_netcdf(path, engine="h5netcdf", encoding=dict.fromkeys(map(str, dataset.variables), packed))
 
 
 def _write_outb(motion: Motion, path: Path, about: str) -> None:
@@ -160,6 +158,8 @@ def _write_outb(motion: Motion, path: Path, about: str) -> None:
 
 
 def _draw(motion: Motion, sea: SeaState | None, folder: Path, title: str) -> None:
+    from jaxhydro.plots.style import motion_figure, save, style  # matplotlib is imported where figures are drawn
+
     with style():
         if sea is not None and motion.wave is not None:
             _sea_figures(motion, motion.wave, sea, folder, title)
@@ -175,6 +175,9 @@ def _statistics(sea: SeaState, folder: Path, title: str, source: str) -> None:
 
 
 def _sea_figures(motion: Motion, wave: np.ndarray, sea: SeaState, folder: Path, title: str) -> None:
+    from jaxhydro.plots import seas as sea_plot
+    from jaxhydro.plots.style import save
+
     time, channels, start = motion.time, in_order(motion.values, wave), sea.results["window"][0]
     second = sea.first_order if sea.about["order"] == 2 else None
     windowed = {name: values[time >= start] for name, values in channels.items()}

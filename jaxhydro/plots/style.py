@@ -1,6 +1,5 @@
 """Style of the figures, and the figure of a simulated motion (no pyplot, no global state)."""
 
-import io
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -81,13 +80,22 @@ def header(figure: Figure, title: str, artists: Mapping[str, Artist] = MappingPr
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a PNG of few colours, a third of the size of one of all. Call within STYLE."""
+    """Write a PNG of few colours, a third of the size of one of all. Call within STYLE.
+
+    The canvas is drawn once. `Figure.savefig` would draw it a second time after its axes are laid out, and write a PNG that
+    would have to be read again.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with io.BytesIO() as drawn:
-        figure.savefig(drawn, format="png")
-        drawn.seek(0)
-        with Image.open(drawn) as image:
-            few = image.convert("RGB").quantize(64, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    figure.set_dpi(STYLE["savefig.dpi"])
+    canvas = FigureCanvasAgg(figure)
+    if (layout := figure.get_layout_engine()) is not None:
+        layout.execute(figure)
+        figure.set_layout_engine("none")
+    for ax in figure.axes:  # before the labels are drawn, which are aligned with those of the other axes
+        ax.apply_aspect()
+    canvas.draw()
+    drawn = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+    few = drawn.quantize(64, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     few.save(path, dpi=(STYLE["savefig.dpi"],) * 2)
 
 

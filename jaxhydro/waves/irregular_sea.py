@@ -143,9 +143,7 @@ class IrregularSea(AbstractSea):
             spectrum[first : last + 1] = np.asarray(at_gauge)
         if order != 1 and self.order == 2:
             spectrum += np.asarray(self.bound_elevation(position))
-        omega = 2 * math.pi / float(waves.period) * np.arange(spectrum.size)
-        parts = np.array_split(times, max(1, times.size * omega.size // 2_000_000))
-        elevation = np.concatenate([(np.exp(1j * np.outer(part, omega)) @ spectrum).real for part in parts])
+        elevation = _harmonic_sum(2 * math.pi / float(waves.period) * times, spectrum)
         return elevation * np.asarray(growth(on_device(times), self.ramp))
 
     def bound_elevation(self, position: tuple[float, float] = (0.0, 0.0)) -> Complex[Array, " b"]:
@@ -234,6 +232,16 @@ class IrregularSea(AbstractSea):
             clock,
             box.half,
         )
+
+
+def _harmonic_sum(angle: Float[np.ndarray, " t"], spectrum: Complex[np.ndarray, " w"]) -> Float[np.ndarray, " t"]:
+    """Real part of sum_n spectrum_n exp(i n angle). Exponentials are computed for each digit of n, not for each n."""
+    base = math.isqrt(spectrum.size - 1) + 1
+    digits = np.zeros((base, base), complex)
+    digits.flat[: spectrum.size] = spectrum
+    parts = np.array_split(angle, max(1, angle.size * base // 500_000))
+    turns = (1j * np.outer(part, np.arange(base)) for part in parts)
+    return np.concatenate([((np.exp(turn) @ digits.T) * np.exp(base * turn)).sum(axis=1).real for turn in turns])
 
 
 @quick_jit

@@ -20,6 +20,7 @@ TOLERANCE = 1e-5  # of a free wave's largest value, that its field may be missed
 BOUND_TOLERANCE_FACTOR = 30.0  # times as much for bound waves shorter than all free ones
 RIDGE = 1e-10  # of the largest singular value: keeps weights small without losing accuracy
 MAX_SUPPORTS = 96
+QR_BLOCKS = (16, 4)  # blocks of rows of a least-squares matrix, and of what they leave; it has a multiple of 32 rows
 
 
 class Box(NamedTuple):
@@ -107,13 +108,27 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
         chebyshev = np.cos(np.pi * (np.arange(count) + 0.5) / count)[::-1]
         k = highest * (0.5 * (1 + chebyshev)) ** (1 / SPACING_POWER)
         basis = _fields(k, x, z, box.depth)
-        u, s, vt = np.linalg.svd(basis, full_matrices=False)
-        table = (vt.T * (s / (s**2 + (RIDGE * s[0]) ** 2))) @ (u.T @ wanted)
+        q, r = _tall_qr(basis, QR_BLOCKS)
+        u, s, vt = np.linalg.svd(r)
+        table = (vt.T * (s / (s**2 + (RIDGE * s[0]) ** 2))) @ (u.T @ (q.T @ wanted))
         error = np.abs(basis @ table - wanted).max(axis=0)
         if (error <= allowed)[inside].all():
             return Supports(k, table.T.copy(), spacing, float(error[inside & (grid <= free)].max()))
         count += 4
     raise ShortWavesError(_too_short(highest, box))
+
+
+def _tall_qr(matrix: np.ndarray, blocks: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """QR factors of a tall matrix, by blocks of rows.
+
+    LAPACK would share out each column of the whole matrix between threads, which takes a hundred times as long.
+    """
+    if not blocks:
+        return np.linalg.qr(matrix)
+    columns = matrix.shape[1]
+    q, r = np.linalg.qr(matrix.reshape(blocks[0], -1, columns))
+    joined, last = _tall_qr(r.reshape(-1, columns), blocks[1:])
+    return (q @ joined.reshape(blocks[0], -1, columns)).reshape(-1, columns), last
 
 
 def _too_short(highest: float, box: Box) -> str:
