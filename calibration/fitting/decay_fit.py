@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -21,6 +20,7 @@ from jaxhydro.dynamics.time_steps import memory_step
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
 from jaxhydro.errors import Problem as Wrong
+from jaxhydro.quick_jit import as_data, on_device
 
 WINDOW_GROWTH = 2.5  # the window grows by this factor, from FIRST_WINDOW_CYCLES cycles to the whole record
 FIRST_WINDOW_CYCLES = 1.25
@@ -55,7 +55,7 @@ def prepare_fit(
     labels = labels_of(campaign, baseline, [str(record.degree_of_freedom) for record in records], free)
     first = baseline.with_values(start or {})
     problem = set_up_decays(first, campaign, records, space_of(campaign, labels, first))
-    x = jnp.array([p.transform.inverse((begin or {}).get(p.label, p.start)) for p in problem.space.free])
+    x = on_device([p.transform.inverse((begin or {}).get(p.label, p.start)) for p in problem.space.free])
     return fit_of_decays(problem, records, x, report)
 
 
@@ -63,7 +63,7 @@ def fit_of_decays(
     problem: DecayProblem, records: Sequence[Record], x: Float[Array, " p"], report: Report = lambda *_: None
 ) -> Fit:
     """Fit to decays that begins at coordinates (p,), and from a first guess of the releases."""
-    unknowns = Unknowns(jnp.asarray(x), first_guess(records, problem.data))
+    unknowns = Unknowns(as_data(x), first_guess(records, problem.data))
     return Fit([DecayPart(problem, records)], unknowns, report, lambda fit: fit.decays.objective())
 
 
@@ -161,7 +161,7 @@ def run_fit(fit: Fit, near: bool = False) -> None:
     """
     decays = fit.decays
     data, records = decays.problem.data, decays.records
-    period, start = 2 * np.pi / np.asarray(data.pace), np.asarray(data.time[:, 0])
+    period, start = 2 * np.pi / np.asarray(data.pace), np.asarray(data.time)[:, 0]
     length = (decays.ends - start) / period
     even, cycles = np.array([record.test.weight for record in records]), FIRST_WINDOW_CYCLES
     windows = max(1, int(np.ceil(np.log(length.max() / FIRST_WINDOW_CYCLES) / np.log(WINDOW_GROWTH))))

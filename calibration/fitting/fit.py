@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Sequence
 
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -16,6 +15,7 @@ from calibration.identifiability.standard_deviations import Spread, WeightedProd
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import Unknowns
 from jaxhydro.dynamics.model import Model
+from jaxhydro.quick_jit import as_data, on_device
 
 ERROR_TOLERANCE = 0.1  # change of the logarithm of an estimated variance that is none
 # inverse of the damping at first of residuals in units of their errors: logarithms of energies are far from linear in those of
@@ -51,7 +51,7 @@ class Fit:
         self.objective = remaining_error if objective is None else objective
         nuisances = sum(part.nuisances for part in parts)
         mean, width = self.space.prior
-        self.mean, self.width = jnp.append(mean, jnp.zeros(nuisances)), np.append(width, np.ones(nuisances))
+        self.mean, self.width = on_device(np.append(mean, np.zeros(nuisances))), np.append(width, np.ones(nuisances))
         self.ridge = 1 / self.width
         self.iterations, self.converged = 0, False
         self.history: list[float] = []
@@ -88,8 +88,8 @@ class Fit:
         Returns:
             Whether it ended before the limit of iterations.
         """
-        weights = tuple(jnp.asarray(part.weight) for part in self.parts)
-        args = LeastSquares(tuple(part.fitted for part in self.parts), weights, self.mean, jnp.asarray(self.ridge))
+        weights = tuple(as_data(part.weight) for part in self.parts)
+        args = LeastSquares(tuple(part.fitted for part in self.parts), weights, self.mean, as_data(self.ridge))
         begin, end = fraction
         for i, now in enumerate(descend(normal_equations, self.unknowns, args, tolerance, trust)):
             self.unknowns, self.converged = now.unknowns, now.settled

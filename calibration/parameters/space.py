@@ -15,6 +15,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.platform.drag_laws import law_labels
+from jaxhydro.quick_jit import on_device
 
 VAGUE_DEVIATION = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way
 DEFAULT_RANGE_FACTOR = 1000.0  # a positive parameter may move by this factor from where it starts, within what its load allows
@@ -63,7 +64,7 @@ class ParameterSpace(NamedTuple):
     @property
     def start(self) -> Float[Array, " p"]:
         """Coordinates of the starting values."""
-        return jnp.array([p.transform.inverse(p.start) for p in self.free])
+        return on_device([p.transform.inverse(p.start) for p in self.free])
 
     @property
     def prior(self) -> tuple[Float[Array, " p"], np.ndarray]:
@@ -72,8 +73,9 @@ class ParameterSpace(NamedTuple):
         A parameter without a stated prior has VAGUE_DEVIATION about its start.
         """
         with_prior = [math.isfinite(p.prior_deviation) for p in self.free]
-        mean = jnp.array([p.prior_mean if stated else s for p, s, stated in zip(self.free, self.start, with_prior)])
-        return mean, np.array([p.prior_deviation if stated else VAGUE_DEVIATION for p, stated in zip(self.free, with_prior)])
+        means = [p.prior_mean if stated else s for p, s, stated in zip(self.free, np.asarray(self.start), with_prior)]
+        widths = [p.prior_deviation if stated else VAGUE_DEVIATION for p, stated in zip(self.free, with_prior)]
+        return on_device(means), np.array(widths)
 
     def values(self, x: Float[Array, " p"]) -> dict[str, Float[Array, ""]]:
         """Parameter values at coordinates."""

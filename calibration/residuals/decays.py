@@ -23,6 +23,7 @@ from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import changes_readings, observe
 from jaxhydro.dynamics.statics import characteristic_length, equilibrium
 from jaxhydro.environment import DOFS
+from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.sea import StillWater
 
 
@@ -72,9 +73,9 @@ def gather_decays(records: Sequence[Record], model: Model, step: float, exact: b
         unit[i] = [metres / length if DOFS.index(channel) > 2 else metres for channel in channels]
         pace.append(2 * np.pi / max(crossing_period(record), 4 * step))
     capacity = padded_size(max(count))
-    arrays = (time, measured, present, size, count, unit, pace, time[:, -1])
+    arrays: tuple[Any, ...] = (time, measured, present, size, count, unit, pace, time[:, -1])
     names = ("time", "measured", "present", "step", "count", "unit", "pace", "until")
-    fields: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
+    fields: dict[str, Any] = dict(zip(names, map(on_device, arrays), strict=True))
     return DecayData(**fields, capacity=capacity, dofs=tuple(DOFS.index(channel) for channel in channels))
 
 
@@ -83,7 +84,7 @@ def padded(data: DecayData, samples: int, steps: int) -> DecayData:
     more = ((0, 0), (0, samples - data.time.shape[1]))
     measured, present = (np.pad(np.asarray(part), ((0, 0), *more)) for part in (data.measured, data.present))
     time = np.pad(np.asarray(data.time), more, mode="edge")
-    return replace(data, time=jnp.asarray(time), measured=jnp.asarray(measured), present=jnp.asarray(present), capacity=steps)
+    return replace(data, time=on_device(time), measured=on_device(measured), present=on_device(present), capacity=steps)
 
 
 def crossing_period(record: Record) -> float:
@@ -106,8 +107,9 @@ def first_guess(records: Sequence[Record], data: DecayData) -> Float[Array, "r 3
     Position and rate are those of a quadratic through the first eighth of a period.
     """
     guess = np.zeros((len(records), 3, len(data.dofs)))
+    unit, pace = np.asarray(data.unit), np.asarray(data.pace)
     for i, record in enumerate(records):
-        early = record.time - record.time[0] <= 0.125 * 2 * np.pi / float(data.pace[i])
+        early = record.time - record.time[0] <= 0.125 * 2 * np.pi / pace[i]
         early[: min(8, len(early))] = True
         t = record.time[early] - record.time[0]
         for j, dof in enumerate(data.dofs):
@@ -115,9 +117,9 @@ def first_guess(records: Sequence[Record], data: DecayData) -> Float[Array, "r 3
             if values is None:
                 continue
             _, rate, position = np.polyfit(t, values[early], 2)
-            guess[i, 0, j] = position / float(data.unit[i, j])
-            guess[i, 1, j] = rate / float(data.unit[i, j] * data.pace[i])
-    return jnp.asarray(guess.reshape(len(records), -1))
+            guess[i, 0, j] = position / unit[i, j]
+            guess[i, 1, j] = rate / (unit[i, j] * pace[i])
+    return on_device(guess.reshape(len(records), -1))
 
 
 def shortened(record: DecayData) -> DecayData:

@@ -3,7 +3,6 @@
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro.calibrated_model import UsedCalibration, with_calibration
@@ -73,11 +72,11 @@ def print_rest(model: Model, platform: str, moved: Collection[str] = DOFS) -> Mo
 
     Raises EquilibriumError where it does not stay there once it is `moved`.
     """
-    rest, modes = np.asarray(equilibrium(model)), stable_modes(model, moved)
-    print_remarks([*rest_remarks(model, jnp.asarray(rest)), *restoring_remarks(model, jnp.asarray(rest))])
+    at_rest, modes = equilibrium(model), stable_modes(model, moved)
+    print_remarks([*rest_remarks(model, at_rest), *restoring_remarks(model, at_rest)])
     if modes.unstable:
         complain(f"warning: the platform is unstable in {' and '.join(modes.unstable)}, which nothing moves here")
-    print_position(f"{platform}: at rest", rest)
+    print_position(f"{platform}: at rest", np.asarray(at_rest))
     rows = []
     for period, shape in zip(modes.period, modes.shape):
         shares = sorted(((abs(share), dof) for share, dof in zip(shape, DOFS) if abs(share) > 0.2), reverse=True)

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -20,6 +19,7 @@ from jaxhydro.dynamics.table_ranges import regular_fault
 from jaxhydro.dynamics.time_steps import default_step
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.quick_jit import on_device
 from jaxhydro.rotations import rotation
 from jaxhydro.units import for_people, unit_of
 from jaxhydro.waves.regular_waves import regular_wave, series_remarks
@@ -85,10 +85,10 @@ def told_of_bed(model: Model, times: np.ndarray, position: np.ndarray) -> None:
 
     The bed does not hold the hull, and there is no water below it.
     """
-    points = jnp.asarray(model.hull.extremities())
+    points = on_device(model.hull.extremities())
     if not points.size:
         return
-    lowest = position[:, 2] + np.asarray(_lowest(jnp.asarray(position), points))
+    lowest = position[:, 2] + np.asarray(_lowest(on_device(position), points))
     below = -float(model.environment.depth) - lowest
     if (below > BED_TOLERANCE * float(model.environment.depth)).any():
         first, most = times[np.argmax(below > 0)], below.max()

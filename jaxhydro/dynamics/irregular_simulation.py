@@ -16,6 +16,7 @@ from jaxhydro.dynamics.time_steps import steps_in
 from jaxhydro.exported_programs import exported_jit
 from jaxhydro.integrators.adams_bashforth_coefficients import START_STEPS
 from jaxhydro.integrators.mixed_precision import Precision
+from jaxhydro.quick_jit import on_device
 from jaxhydro.rotations import rotation
 from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
 from jaxhydro.waves.sea import AbstractSea
@@ -156,7 +157,7 @@ def simulate_irregular(
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, **computed)
         response, grid = simulate_steps(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint, precision)
         box: Any = model.through(prepared)  # with the box moved where the sea is
-        reached = float(_farthest(response.position, jnp.asarray(points), box))
+        reached = float(_farthest(response.position, on_device(points), box))
         if not reached + margin > prepared.half:
             return IrregularSimulation(response, grid, prepared, step, steps)
         if reached > prepared.half + 10 * first_excursion:

@@ -13,6 +13,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.requested_sea import Record, RequestedSea
 from jaxhydro.dynamics.table_ranges import heading_fault, outside_tables
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.quick_jit import on_device
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.directional_spectrum import (
@@ -78,7 +79,7 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
         target = None
     else:
         waves, about, target = _from_spectrum(model, asked, duration, notes)
-    energy = float(0.5 * (waves.amplitude**2).sum())
+    energy = 0.5 * float((np.asarray(waves.amplitude) ** 2).sum())
     about |= {
         "lowest_frequency": low,
         "cutoff": cutoff,
@@ -170,7 +171,8 @@ def _from_spectrum(
         raise InputError(option, [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
     except ValueError as error:
         raise impossible("--cutoff", error) from None
-    share = float(spectrum(waves.omega).sum() * 2 * math.pi / waves.period) / (hs**2 / 16)
+    density = np.asarray(spectrum(on_device(waves.omega)))  # as within `spectrum_components`, for one program less
+    share = float(density.sum()) * 2 * math.pi / float(waves.period) / (hs**2 / 16)
     if share < MIN_SHARE:
         expected = f"a band, here {low:g} to {cutoff:g} Hz, with waves in it"
         raise InputError("--cutoff", [Problem("", expected, f"one with {share:.1%} of the spectrum")])

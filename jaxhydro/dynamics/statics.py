@@ -232,5 +232,6 @@ def stable_modes(model: Model, moved: Collection[str] = DOFS) -> Modes:
 
 def characteristic_length(model: Model) -> float:
     """Radius of gyration (m) in roll and pitch, by which an angle is compared with a displacement."""
-    inertia = np.asarray(model.body.inertia_at_reference())
-    return float(np.sqrt(0.5 * (inertia[0, 0] + inertia[1, 1]) / float(model.body.mass)))
+    mass, (x, y, z), inertia = float(model.body.mass), np.asarray(model.body.centre), np.asarray(model.body.inertia)
+    roll, pitch = inertia[0, 0] + mass * (y**2 + z**2), inertia[1, 1] + mass * (x**2 + z**2)  # parallel-axis theorem
+    return float(np.sqrt(0.5 * (roll + pitch) / mass))

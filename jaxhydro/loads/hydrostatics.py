@@ -14,7 +14,7 @@ from jaxhydro.hull.strips import END_WETTING_LENGTH
 from jaxhydro.hull.waterplane import chord, segment
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.quick_jit import on_device, quick_jit
+from jaxhydro.quick_jit import as_data, on_device, quick_jit
 from jaxhydro.rotations import cross, rotation
 from jaxhydro.scales import covered, entered
 
@@ -149,7 +149,7 @@ class Buoyancy(AbstractLoad):
             Displaced volume (m³), z of its centroid (m), C33 (N/m), C44 and C55 (N m/rad) without the contribution of the
                 weight.
         """
-        volume, moment, slope = (np.asarray(x) for x in _upright(self, jnp.asarray(weight_density)))
+        volume, moment, slope = (np.asarray(x) for x in _upright(self, as_data(weight_density)))
         total = float(volume.sum())
         return {
             "displaced_volume": total,

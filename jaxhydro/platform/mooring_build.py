@@ -12,7 +12,7 @@ from jaxhydro.platform.mooring_schema import LinearSprings, StiffnessMatrix
 from jaxhydro.platform.schema import Platform
 from jaxhydro.platform.tension_table_build import tension_table_lines
 from jaxhydro.platform.tension_table_schema import TensionTableMooring
-from jaxhydro.quick_jit import quick_jit
+from jaxhydro.quick_jit import on_device, quick_jit
 from jaxhydro.remarks import Remark, as_warnings
 
 
@@ -30,7 +30,7 @@ def mooring_loads(platform: Platform) -> list[AbstractLoad]:
     """Loads of the mooring: its lines, or a stiffness matrix; none without a mooring."""
     mooring = platform.mooring
     if isinstance(mooring, StiffnessMatrix):
-        return [Stiffness(entries_of("C", mooring.matrix()), jnp.asarray(mooring.preload), "mooring")]
+        return [Stiffness(entries_of("C", mooring.matrix()), on_device(np.asarray(mooring.preload, float)), "mooring")]
     if isinstance(mooring, Catenary):
         return [catenary_lines(mooring, platform.water)]
     if isinstance(mooring, TensionTableMooring):
@@ -39,8 +39,8 @@ def mooring_loads(platform: Platform) -> list[AbstractLoad]:
         return []
     springs = {f"line{i + 1}": line.spring() for i, line in enumerate(mooring.lines)}
     stiffness, unstretched = ({name: spring[k] for name, spring in springs.items()} for k in (0, 1))
-    anchor = jnp.asarray(np.array([line.anchor for line in mooring.lines], float).T)
-    fairlead = jnp.asarray(np.array([line.fairlead for line in mooring.lines], float).T)
+    anchor = on_device(np.array([line.anchor for line in mooring.lines], float).T)
+    fairlead = on_device(np.array([line.fairlead for line in mooring.lines], float).T)
     return [MooringLines(anchor, fairlead, stiffness, unstretched)]
 
 
