@@ -23,7 +23,6 @@ from calibration.global_search.task import Budget
 from calibration.report import tables
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
 from calibration.report.summary import calibration_sentence, summary_of
-from calibration.report.write_report import write_report
 from calibration.residuals.measured_seas import Diverged
 from calibration.residuals.seas import Objective
 from calibration.residuals.wave_options import non_default_options, options_of
@@ -189,7 +188,7 @@ def run(
     if truth is not None:
         table("Against the true coefficients", *tables.comparison_with_truth(saved))
         say(tables.agreement_with_truth(saved))
-    say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them" if truth is None else f"Open {write_report(out)}")
+    say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them" if truth is None else f"Open {_report(out)}")
     if tests == "decays" and any(not parameter.identifiable for parameter in saved.baseline.parameters.values()):
         command = (
             f"jaxhydro uncertainty {shlex.quote(str(campaign.folder))} --calibration {shlex.quote(str(out))} --profile '*'"
@@ -199,6 +198,13 @@ def run(
         complain("not converged: the results are marked so")
     say(calibration_sentence(summary_of(saved)), "bold")
     return result
+
+
+def _report(out: Path) -> Path:
+    """Write the report page of the results in a folder."""
+    from calibration.report.write_report import write_report  # with the pages of sweeps, which take long to import
+
+    return write_report(out)
 
 
 def _print_results(saved: CalibrationFile) -> None:

@@ -147,7 +147,7 @@ def linear_quadratic(pairs: Decrements) -> LinearQuadratic:
     freedom = count - 2
     variance = float(np.sum((target - rows @ solution) ** 2)) / freedom
     covariance = variance * np.linalg.inv(rows.T @ rows) / np.outer(scale, scale)
-    best, half = solution / scale, scipy.stats.t.ppf(0.5 + CONFIDENCE / 2, freedom) * np.sqrt(np.diag(covariance))
+    best, half = solution / scale, _quantile(freedom) * np.sqrt(np.diag(covariance))
     warnings = tuple(
         f"{name} damping is negative: {value:.3g}, {'within' if value + width >= 0 else 'beyond'} its uncertainty"
         for name, value, width in zip(_TERMS, best, half)
@@ -179,8 +179,17 @@ def equivalent_damping(fit: LinearQuadratic, amplitude: np.ndarray | float, iner
     a = np.asarray(amplitude, dtype=float)
     row = np.stack([np.ones_like(a), 16 / (3 * fit.period) * a], axis=-1)
     value = row @ np.array([fit.linear.value, fit.quadratic.value])
-    width = scipy.stats.t.ppf(0.5 + CONFIDENCE / 2, fit.freedom) * np.sqrt(np.einsum("...i,ij,...j", row, fit.covariance, row))
+    width = _quantile(fit.freedom) * np.sqrt(np.einsum("...i,ij,...j", row, fit.covariance, row))
     return EstimateWithInterval(inertia * value, inertia * (value - width), inertia * (value + width))
+
+
+def _quantile(freedom: int) -> float:
+    """Half the width of the confidence interval over its standard deviation: a quantile of Student's t distribution.
+
+    Args:
+        freedom: Degrees of freedom.
+    """
+    return float(scipy.special.stdtrit(freedom, 0.5 + CONFIDENCE / 2))  # as of scipy.stats, which takes long to import
 
 
 def classical(

@@ -1,9 +1,9 @@
 """Change of a decay's period with its amplitude, measured against simulated."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
-import scipy  # its parts are imported when they are used: that takes a second
 
 from jaxhydro.dynamics.response import decay_cycles
 
@@ -54,7 +54,7 @@ def unexplained_period_change(
     )
     periods = PeriodChange(*(float(half.mean()) for series in (real, model) for half in np.split(series, [count // 2])))
     change = (periods.large - periods.small) - (periods.simulated_large - periods.simulated_small)
-    slope = scipy.stats.linregress(amplitude, real - model)
-    if abs(change) < MIN_CHANGE * float(real.mean()) or abs(slope.slope) < MIN_DEVIATIONS * slope.stderr:
+    (slope, _), covariance = np.polyfit(amplitude, real - model, 1, cov=True)
+    if abs(change) < MIN_CHANGE * float(real.mean()) or abs(slope) < MIN_DEVIATIONS * math.sqrt(covariance[0, 0]):
         return None
     return periods

@@ -15,7 +15,7 @@ References:
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import boxcox
+import scipy  # its parts are imported when they are used: that takes a second
 
 from calibration.discovery.linearisations import Linearisation, Point, Prior
 from calibration.discovery.study import Study
@@ -35,7 +35,7 @@ def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
     n (m^p - 1) / p with p = `power`, n ln m for p = 0; n (m - 1) below the floor.
     """
     mean_square = study.levels(residual)
-    return study.pooled * (boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
+    return study.pooled * (scipy.special.boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
 
 
 def cost_of(

@@ -1,8 +1,10 @@
 """What `jaxhydro` and `calibration` offer by name: explicit arguments, and names that hide no module."""
 
+import ast
 import importlib
 import inspect
 import pkgutil
+from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -36,3 +38,16 @@ def test_no_function_hides_a_module(package: ModuleType) -> None:
             if not isinstance(getattr(module, module_info.name, module), ModuleType):
                 hidden.add((folder, module_info.name))
     assert hidden <= SHADOWED
+
+
+def test_names_of_calibration_are_imported_from_where_type_checkers_find_them() -> None:
+    """They are listed twice: for type checkers, and for the import of each when it is asked for."""
+    tree = ast.parse(Path(calibration.__file__).read_text(encoding="utf-8"))
+    imports = [
+        node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and str(node.module).startswith("calibration.")
+    ]
+    assert {alias.name: node.module for node in imports for alias in node.names} == calibration._MODULES
+    assert sorted(calibration._MODULES) == sorted(calibration.__all__)
+    assert set(calibration.__all__) <= set(dir(calibration))
+    with pytest.raises(AttributeError, match="'calibration' has no attribute 'nothing'"):
+        calibration.nothing  # noqa: B018

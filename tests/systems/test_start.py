@@ -186,3 +186,21 @@ def test_float32_is_told(untouched: pytest.MonkeyPatch, tmp_path: Path) -> None:
     assert text.startswith("jaxhydro: jaxhydro needs float64. Remove JAX_ENABLE_X64=0")
     jax.config.update("jax_enable_x64", True)
     need_float64()
+
+
+@pytest.mark.slow
+def test_a_command_imports_what_it_needs(tmp_path: Path) -> None:
+    """A simulation without figures needs no matplotlib and no data frames, and of scipy only LAPACK, which JAX takes from it."""
+    sea = ["--hs", "3", "--tp", "9", "--duration", "100", "--no-figures"]
+    words = ["simulate", "volturnus-s", *sea, "--out", str(tmp_path / "sea")]
+    others = ["matplotlib", "scipy.signal", "scipy.stats", "scipy.special", "pandas", "xarray", "dask", "calibration"]
+    code = f"""
+import contextlib, io, json, sys
+from jaxhydro.cli.app import main
+sys.argv = ["jaxhydro", *{words!r}]
+with contextlib.suppress(SystemExit), contextlib.redirect_stderr(io.StringIO()):
+    main()
+print(json.dumps([name for name in {others!r} if name in sys.modules]))
+"""
+    assert process(code, tmp_path) == []
+    assert (tmp_path / "sea" / "simulated.nc").is_file()

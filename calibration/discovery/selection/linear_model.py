@@ -16,7 +16,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+import scipy  # its parts are imported when they are used: that takes a second
 
 from calibration.discovery.score_covariance import discrepancy_of
 from calibration.discovery.selection.bounded_quadratic import RIDGE, bounded_minimum
@@ -128,7 +128,7 @@ class LinearModel:
             cross = cross + np.pad((value / unknowns.width**2)[:, None], ((0, 0), (cross.shape[1] - 1, 0)))
             inner = inner + np.diag(1 / unknowns.width**2)
             inner[np.diag_indices_from(inner)] += RIDGE * np.diag(inner).mean()
-            solved = cho_solve(cho_factor(inner), cross)
+            solved = scipy.linalg.cho_solve(scipy.linalg.cho_factor(inner), cross)
             whole -= cross.T @ solved
             back.append(solved)
         return whole, back
