@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from calibration.identifiability.findings import Identifiability
 
+NOT_FOLLOWED_ERROR = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
+
 
 @dataclass(frozen=True, eq=False)
 class Estimate:

@@ -22,14 +22,12 @@ from calibration.identifiability.standard_deviations import Spread
 from calibration.notes import Note, NoteKind, notes_of
 from calibration.parameters.families import parameter_family
 from calibration.parameters.space import ParameterSpace, slopes
-from calibration.result import Calibration, Estimate, TestFit
+from calibration.result import NOT_FOLLOWED_ERROR, Calibration, Estimate, TestFit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.environment import DOFS
 from jaxhydro.platform.drag_laws import law_labels
-
-NOT_FOLLOWED_ERROR = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
 
 
 def estimates(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: Spread) -> dict[str, Estimate]:

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from calibration.fitting.fit_conclusion import NOT_FOLLOWED_ERROR
 from calibration.formatting import counted, listed, percent, percent_span
+from calibration.result import NOT_FOLLOWED_ERROR
 from calibration.results.calibration_file import CalibrationFile, ChannelError, Parameter
 
 KINDS = {"decay": "decay", "regular": "test", "irregular": "test"}

@@ -190,7 +190,7 @@ def test_float32_is_told(untouched: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_command_imports_what_it_needs(tmp_path: Path) -> None:
-    """A simulation without figures needs no matplotlib and no data frames, and of scipy only LAPACK, which JAX takes from it."""
+    """A simulation without figures needs no matplotlib and no data frames; of scipy JAX takes LAPACK."""
     sea = ["--hs", "3", "--tp", "9", "--duration", "100", "--no-figures"]
     words = ["simulate", "volturnus-s", *sea, "--out", str(tmp_path / "sea")]
     others = ["matplotlib", "scipy.signal", "scipy.stats", "scipy.special", "pandas", "xarray", "dask", "calibration"]
