@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from jaxhydro.analysis.windows import window_weights
 from jaxhydro.waves.recorded_waves import sampling_interval
 
 SEGMENT = 1000.0  # s: 0.001 Hz between frequencies, so that the lowest band, 0.005 to 0.025 Hz, has twenty of them
@@ -179,22 +180,6 @@ def band_weights(
     inside = np.flatnonzero(weight)
     first, last = (int(inside[0]), int(inside[-1]) + 1) if len(inside) else (0, 1)
     return BandWeights(np.arange(0, count - size + 1, size - shared), taper, first, weight[first:last])
-
-
-def window_weights(name: str, count: int) -> Float[np.ndarray, " s"]:
-    """Weights of a window: `scipy.signal.get_window`, whose import takes as long as a simulation.
-
-    Args:
-        name: Name of the window.
-        count: Number of samples.
-    """
-    if name == "boxcar":
-        return np.ones(count)
-    if name == "hann":
-        return 0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, count + 1)[:-1])
-    from scipy.signal import get_window
-
-    return np.asarray(get_window(name, count))
 
 
 def _sides(count: int) -> Float[np.ndarray, " f"]:

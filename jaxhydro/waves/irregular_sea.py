@@ -239,8 +239,7 @@ def _harmonic_sum(angle: Float[np.ndarray, " t"], spectrum: Complex[np.ndarray, 
     base = math.isqrt(spectrum.size - 1) + 1
     digits = np.zeros((base, base), complex)
     digits.flat[: spectrum.size] = spectrum
-    parts = np.array_split(angle, max(1, angle.size * base // 500_000))
-    turns = (1j * np.outer(part, np.arange(base)) for part in parts)
+    turns = (1j * np.outer(part, np.arange(base)) for part in np.array_split(angle, max(1, angle.size * base // 500_000)))
     return np.concatenate([((np.exp(turn) @ digits.T) * np.exp(base * turn)).sum(axis=1).real for turn in turns])
 
 
