@@ -16,7 +16,7 @@ def turning_points(y: np.ndarray, begin: int, end: int, prominence: float) -> np
         prominence: Least prominence of a turning point (unit of `y`).
     """
     part = y[begin:end]
-    high, low = (prominent_peaks(sign * part, prominence) for sign in (1, -1))
+    high, low = (scipy.signal.find_peaks(sign * part, prominence=prominence)[0] for sign in (1, -1))
     both = sorted([*((k, 1) for k in high), *((k, -1) for k in low)])
     turns: list[tuple[int, int]] = []
     for index, sign in both:
@@ -26,43 +26,6 @@ def turning_points(y: np.ndarray, begin: int, end: int, prominence: float) -> np
         else:
             turns.append((index, sign))
     return np.array([index + begin for index, _ in turns], int)
-
-
-def prominent_peaks(x: np.ndarray, prominence: float) -> np.ndarray:
-    """Samples of the peaks of a record, of flat ones the middle: `scipy.signal.find_peaks`, whose import takes a second.
-
-    The prominence of a peak is its height above the higher of the lowest values that separate it, on either side, from a
-    higher value or from the end of the record.
-
-    Args:
-        x: (n,) the record.
-        prominence: Least prominence (unit of `x`).
-    """
-    if len(x) < 3:
-        return np.zeros(0, int)
-    first = np.flatnonzero(np.diff(x, prepend=np.nan))  # of each stretch of equal values
-    rising = np.diff(x[first]) > 0
-    turns = np.concatenate([[0], 1 + np.flatnonzero(rising[1:] != rising[:-1]), [len(first) - 1]])
-    height = x[first[turns]]
-    after = np.append(first, len(x))[turns + 1]
-    middle = (first[turns] + after - 1) // 2
-    base = np.maximum(_lowest_since_higher(height), _lowest_since_higher(height[::-1])[::-1])
-    inner = np.arange(len(turns))[1:-1]
-    peaks = inner[(height[inner] > height[inner - 1]) & (height[inner] - base[inner] >= prominence)]
-    return middle[peaks]
-
-
-def _lowest_since_higher(x: np.ndarray) -> np.ndarray:
-    """Lowest value from behind the last higher value up to each value, (n,)."""
-    lowest = []
-    higher: list[tuple[float, float]] = []  # values that no later one reaches, and the lowest value since the one before
-    for value in x.tolist():
-        low = value
-        while higher and higher[-1][0] <= value:
-            low = min(low, higher.pop()[1])
-        higher.append((value, low))
-        lowest.append(low)
-    return np.array(lowest)
 
 
 def moving_range(y: np.ndarray, width: int) -> np.ndarray:
