@@ -36,19 +36,13 @@ def computed_with() -> dict[str, str]:
     """Hash of the packages' sources, versions of Python and the libraries, and precision."""
     import jax
 
-    return _versions() | {"precision": "float64" if jax.config.jax_enable_x64 else "float32"}  # type: ignore[attr-defined]
-
-
-@functools.cache
-def _versions() -> dict[str, str]:
-    """Hash of the packages' sources, and versions of Python and the libraries."""
     versions = {"source code": sources(), "Python": f"{sys.version_info.major}.{sys.version_info.minor}"}
     for name in LIBRARIES:
         try:
             versions[name] = version(name)
         except PackageNotFoundError:
             versions[name] = "none"
-    return versions
+    return versions | {"precision": "float64" if jax.config.jax_enable_x64 else "float32"}  # type: ignore[attr-defined]
 
 
 def fingerprint(*inputs: Any) -> str:

@@ -109,7 +109,7 @@ def test_a_test_is_about_what_moves_in_it():
     worst = replace(left_of("heave")[0], relative=0.95)
     assert unexplained_motions(under_way, [*left_of("surge"), worst])[0] is worst  # type: ignore[arg-type]
     assert unexplained_note([Candidate("hidden_oscillator", "heave", ())], [worst]).startswith(
-        "with a hidden oscillator in heave in the model, 95 % of heave is left in sea. Something else acts instead, or as well."
+        "with a hidden oscillator in heave in the model, 95 % of heave is left in sea. Something else acts instead, or as well"
     )
 
 
@@ -256,7 +256,8 @@ def test_gain_is_of_what_is_asked():
 
 @pytest.mark.parametrize(("refused", "reason"), [(None, WORSE), (Refusal(RefusalKind.NEGLIGIBLE), WORSE), (LITTLE, LITTLE)])
 def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against_it(refused, reason, monkeypatch):
-    for name, value in {"reason_to_reject": refused, "worsened_motion": WORSE, "significance": 9.0}.items():
+    assessed = {"reason_to_reject": refused, "worsened_motion": WORSE, "significance": 9.0, "dispersion_of": 1.0}
+    for name, value in assessed.items():
         monkeypatch.setattr(acceptance, name, lambda *_, value=value: value)
     study = SimpleNamespace(used=np.array([True]))
     state = SimpleNamespace(likelihood=np.zeros(1), summary=None, linearisation=SimpleNamespace(point=SimpleNamespace(x=None)))
@@ -513,7 +514,7 @@ def test_a_parameter_that_is_very_clear_counts_beside_one_that_is_not(monkeypatc
     for variances in ((1.0, 1.0), (1.0, 1e-12), (1.0, 1e-20), (1e-20, 1.0)):
         covariance, steps = np.diag(variances), 5 * np.sqrt(variances)
         study = SimpleNamespace(index=lambda names: [0, 1], steps=lambda x, steps=steps: steps)
-        monkeypatch.setattr(acceptance, "predict_gain", lambda *_, c=covariance: SimpleNamespace(covariance=c))
+        monkeypatch.setattr(acceptance, "parameter_covariance", lambda *_, c=covariance: c)
         state = SimpleNamespace(linearisation=SimpleNamespace(active=(0, 1), point=SimpleNamespace(x=None)))
         assert acceptance.significance(study, candidate, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
 
