@@ -3,10 +3,13 @@
 The counterpart of `openfast_deck`, which reads it back.
 """
 
+import math
 from collections.abc import Iterator
 
+import jax.numpy as jnp
 import numpy as np
 
+from jaxhydro.dynamics.statics import linearised
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
 from jaxhydro.interop.export_effects import effects_left_out, plain_load
 from jaxhydro.interop.export_source import ExportedModel, ExportSource
@@ -38,6 +41,9 @@ from jaxhydro.loads import (
 
 RIPPLE = 1e-6  # m, height of the waves of a deck with the keyword MCF: SeaState has none of it in still water
 GRID_MARGIN = 50.0  # m, of SeaState's grid beyond the hull, and below it
+GRID_SPACING = 5.0  # m along x: SeaState interpolates linearly, which takes 0.3 % off waves of 10 s
+TIME_STEPS = (0.025, 0.02, 0.0125, 0.01, 0.005, 0.004, 0.0025, 0.002, 0.00125, 0.001, 0.0005, 0.0002, 0.0001)  # s
+STEPS_PER_PERIOD = 12  # of the shortest natural period: OpenFAST's step diverges at 3, and is stable at 7
 WRITTEN = (
     *(AddedMass, Buoyancy, CatenaryLines, ComputedAddedMass, ComputedExcitation, ComputedRadiation, DriftTransfer, EndInertia),
     *(HydrostaticCoupling, LinearDamping, MooringLines, MorisonDrag, QuadraticDamping, Stiffness, StripInertia),
@@ -78,20 +84,34 @@ def export_deck(source: ExportSource) -> ExportedModel:
         **tables.rows,
     )
     places = np.array([end for member in source.members for end in (member.a, member.b)] or [np.zeros(3)])
+    half_width = np.ceil(np.abs(places[:, :2]).max()) + GRID_MARGIN
     ripple = RIPPLE if tables.diameter else 0.0
     texts["seastate.dat"] = filled(
         "seastate.dat",
         name=source.name,
-        half_width=digits(np.ceil(np.abs(places[:, :2]).max()) + GRID_MARGIN),
+        half_width=digits(half_width),
+        points=2 * math.ceil(half_width / GRID_SPACING) + 1,
         grid_depth=digits(min(float(water.depth), np.ceil(-places[:, 2].min()) + GRID_MARGIN)),
         ripple=ripple,
         stretched=stretched,
         cylinder=digits(tables.diameter),
     )
     values = {key: digits(getattr(water, key)) for key in ("density", "depth", "gravity")}
-    texts["main.fst"] = filled("main.fst", name=source.name, lines=bool(lines), **values)
+    texts["main.fst"] = filled("main.fst", name=source.name, lines=bool(lines), step=time_step(source), **values)
     items += [_sea(ripple), *_forms(source), *effects_left_out(source, WRITTEN)]
     return ExportedModel(texts | flow.texts, tuple(items), flow.files)
+
+
+def time_step(source: ExportSource) -> float:
+    """Time step (s) of OpenFAST, DT, that resolves the shortest natural period at the reference position.
+
+    Args:
+        source: The platform.
+    """
+    mass, stiffness = (np.asarray(matrix) for matrix in linearised(source.model, jnp.zeros(6)))
+    fastest = math.sqrt(max(0.0, np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real.max()))
+    longest = 2 * math.pi / fastest / STEPS_PER_PERIOD if fastest else math.inf
+    return next((step for step in TIME_STEPS if step <= longest), TIME_STEPS[-1])
 
 
 def _water(source: ExportSource) -> ConvertedItem:
@@ -113,11 +133,12 @@ def _members(source: ExportSource) -> Iterator[ConvertedItem]:
 
 
 def _sea(ripple: float) -> ConvertedItem:
+    grid = "SeaState's grid is for waves along x: for other headings set NY as NX."
     if not ripple:
-        return ConvertedItem("sea", Treatment.TAKEN, "Still water (WaveMod 0). Set WaveMod in seastate.dat.")
+        return ConvertedItem("sea", Treatment.TAKEN, f"Still water (WaveMod 0). Set WaveMod in seastate.dat. {grid}")
     text = (
         f"A regular wave of {1e3 * ripple:g} mm stands for still water, as SeaState has no MacCamy-Fuchs diffraction with "
-        "WaveMod 0. Set WaveMod and WaveHs in seastate.dat."
+        f"WaveMod 0. Set WaveMod and WaveHs in seastate.dat. {grid}"
     )
     return ConvertedItem("sea", Treatment.APPROXIMATED, text)
 

@@ -4,11 +4,11 @@ The table of radiation has the added mass, too. HydroDyn opens `.hst`, `.1` and 
 has not is written as zeros.
 
 References:
-    OpenFAST v5.0.0 (2895884), WAMIT.f90, WAMIT_Init (files, PER = 0, F_HS_Moment_Offset, SttcDim, RdtnDim), and HydroDyn
+    OpenFAST v5.0.0 (2895884), WAMIT.f90, WAMIT_Init (files, PER <= 0, F_HS_Moment_Offset, SttcDim, RdtnDim), and HydroDyn
     modelling considerations (`.hst` without the weight). Dimensions: docs/conventions.md, Files with ULEN.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -118,8 +118,9 @@ def exported_flow(source: ExportSource) -> ExportedFlow:
     periods = list(dict.fromkeys(float(words[0]) for words in others if float(words[0]) > 0.0)) or list(PERIODS)
     finite = [" ".join(words) for words in rows if float(words[0]) != 0.0]
     finite = finite or [f"{period!r} {i} {i} 0.0 0.0" for period in periods for i in range(1, 7)]
-    infinite = [f"0.0 {entry}" for entry in _infinite(model, flow)]
-    flow.texts[f"{ROOT}.1"] = "\n".join([*infinite, *finite]) + "\n"
+    infinite = list(_infinite(model, flow))
+    limits = [f"0.0 {entry}" for entry in infinite] + _zero_frequency(rows, infinite)
+    flow.texts[f"{ROOT}.1"] = "\n".join([*limits, *finite]) + "\n"
     if "excitation" not in tables:
         zeros = [f"{period!r} 0.0 {i} 0.0 0.0 0.0 0.0" for period in periods for i in range(1, 7)]
         flow.texts[f"{ROOT}.3"] = "\n".join(zeros) + "\n"
@@ -210,6 +211,21 @@ def _infinite(model: Model, flow: ExportedFlow) -> Iterator[str]:
     for i in range(6):
         for j in range(6):
             yield row(i + 1, j + 1, float(added[i, j] / (density * flow.length ** (3 + (i > 2) + (j > 2)))))
+
+
+def _zero_frequency(rows: Sequence[Sequence[str]], infinite: Sequence[str]) -> list[str]:
+    """Rows of the added mass at zero frequency, without which HydroDyn stops; it uses no number of them.
+
+    Args:
+        rows: Rows of the table of radiation. Its longest period stands for zero frequency where it has none.
+        infinite: Row, column and value of the added mass at infinite frequency, for a platform without a table.
+    """
+    periods = {float(words[0]) for words in rows} - {0.0}
+    if periods and min(periods) < 0.0:
+        return []
+    return [f"-1.0 {words[1]} {words[2]} {words[3]}" for words in rows if float(words[0]) == max(periods)] or [
+        f"-1.0 {entry}" for entry in infinite
+    ]
 
 
 def _rows(path: Path) -> list[list[str]]:

@@ -50,7 +50,7 @@ def member_tables(source: ExportSource, buoyant: bool, potential: bool) -> Membe
         buoyant: Whether HydroDyn computes the buoyancy of members; else its tables do.
         potential: Whether potential flow stands for the members (PropPot), so that drag alone is left to them.
     """
-    tables, pieces = MemberTables(), pieces_of(source.members)
+    tables, pieces = MemberTables(), pieces_of(source.members, float(source.model.environment.depth))
     joints, joint_at = joints_of(pieces)
     axial = [_axial(source, joint, tables.notes) for joint in joints]
     kinds = list(dict.fromkeys(axial))

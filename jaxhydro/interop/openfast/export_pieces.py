@@ -18,6 +18,7 @@ from jaxhydro.hull.member import Member
 STEP = 1e-5  # of a member's length: stations that are closer are a step in size
 MEETING = 1e-3  # of the larger radius: columns whose ends are closer meet (`hull.ends`)
 ALIGNED = 1 - 1e-6
+OVER_SEABED = 1e-3  # m
 
 
 @dataclass(frozen=True)
@@ -82,14 +83,20 @@ class PieceJoint:
         return max(self.meeting, key=lambda pair: pair[0].area(pair[1]))
 
 
-def pieces_of(members: Sequence[Member]) -> list[Piece]:
-    """Members cut at their stations."""
+def pieces_of(members: Sequence[Member], depth: float) -> list[Piece]:
+    """Members cut at their stations.
+
+    Args:
+        members: The members.
+        depth: Water depth, m. Ends on the seabed are `OVER_SEABED` above it, as SeaState has no water below it.
+    """
     pieces: list[Piece] = []
     for member in members:
         for low, high, sizes in _spans(member):
             ends = np.stack([member.a + fraction * (member.b - member.a) for fraction in (low, high)])
             if ends[0][2] > ends[1][2]:
                 ends, sizes = ends[::-1], sizes[::-1]
+            ends[:, 2] = np.where(np.abs(ends[:, 2] + depth) < OVER_SEABED, OVER_SEABED - depth, ends[:, 2])
             ends = np.where(np.abs(ends) < 1e-12 * np.abs(ends).max(), 0.0, ends)
             turned = float(member.axis @ (ends[1] - ends[0])) < 0.0
             spin = 0.0 if member.circular else math.degrees(-member.twist if turned else member.twist)
