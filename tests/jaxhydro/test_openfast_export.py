@@ -11,6 +11,7 @@ from openfast_io.FAST_reader import InputReader_OpenFAST
 
 from jaxhydro.cli.export_command import source_of
 from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import linearised
 from jaxhydro.hull.member import Member
 from jaxhydro.interop.conversion import Conversion, Treatment
 from jaxhydro.interop.export_source import ExportedModel
@@ -108,7 +109,20 @@ def test_members_and_coefficients_come_back(trips: dict[str, RoundTrip], name: s
         assert its == pytest.approx(size, rel=SAME) and returned_member.circular is member.circular
         own, returned = coefficients(before, member), coefficients(after, returned_member)
         for key in ("Ca_t", "Cd_t") if member.column else ("Ca_t", "Ca_z", "Cd_t", "Cd_z"):
-            assert returned[key] == pytest.approx(own[key], rel=SAME), (ends, key)
+            expected = 0.0 if key.startswith("Ca") and name == "iti-barge" else own[key]
+            assert returned[key] == pytest.approx(expected, rel=SAME), (ends, key)
+
+
+def test_the_added_mass_of_a_barge_is_in_the_table(trips: dict[str, RoundTrip]) -> None:
+    """Nodes of its members come out of the water and go under: with their own added mass OpenFAST does not converge."""
+    trip = trips["iti-barge"]
+    added = [
+        np.asarray(linearised(model, np.zeros(6))[0]) - np.asarray(model.body.mass_matrix())
+        for model in map(build, (trip.before, trip.after))
+    ]
+    assert np.diag(added[1]) == pytest.approx(np.diag(added[0]), rel=1e-8)
+    assert "PER = 0" in said(trip.deck, "Ca_t, Ca_z", Treatment.APPROXIMATED)
+    assert "table of excitation" in said(trip.deck, "coefficients", Treatment.LEFT_OUT)
 
 
 @pytest.mark.parametrize("name", BUILT_IN)

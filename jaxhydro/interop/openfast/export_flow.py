@@ -23,6 +23,7 @@ from jaxhydro.dynamics.statics import linearised
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.conversion import ConvertedItem, Treatment
 from jaxhydro.interop.export_source import ExportSource
+from jaxhydro.interop.openfast.export_pieces import all_at_surface
 from jaxhydro.interop.openfast.export_text import digits, row
 from jaxhydro.interop.openfast.table_row import to_number
 from jaxhydro.loads import (
@@ -118,7 +119,7 @@ def exported_flow(source: ExportSource) -> ExportedFlow:
     periods = list(dict.fromkeys(float(words[0]) for words in others if float(words[0]) > 0.0)) or list(PERIODS)
     finite = [" ".join(words) for words in rows if float(words[0]) != 0.0]
     finite = finite or [f"{period!r} {i} {i} 0.0 0.0" for period in periods for i in range(1, 7)]
-    infinite = list(_infinite(model, flow))
+    infinite = list(_infinite(model, flow, all_at_surface(source.members)))
     limits = [f"0.0 {entry}" for entry in infinite] + _zero_frequency(rows, infinite)
     flow.texts[f"{ROOT}.1"] = "\n".join([*limits, *finite]) + "\n"
     if "excitation" not in tables:
@@ -192,17 +193,18 @@ def _at_rest(load: Buoyancy, weight: Float[Array, ""]) -> tuple[Float[Array, "6"
     return force(jnp.zeros(6)), jax.jacfwd(force)(jnp.zeros(6))
 
 
-def _infinite(model: Model, flow: ExportedFlow) -> Iterator[str]:
-    """Entries of the added mass of infinite frequency: row, column and value."""
+def _infinite(model: Model, flow: ExportedFlow, afloat: bool) -> Iterator[str]:
+    """Entries of the added mass of infinite frequency: row, column and value; `afloat`: that of members, too."""
     added = sum((np.asarray(assemble(load.entries)) for load in model.loads if isinstance(load, AddedMass)), np.zeros((6, 6)))
     if added.any():
         flow.say("added_mass", Treatment.TAKEN, f"Rows of PER = 0 in {ROOT}.1.")
-    if flow.excitation:
+    if flow.excitation or afloat:
         strips = tuple(load for load in model.loads if isinstance(load, StripInertia | EndInertia | ComputedAddedMass))
         strip_mass = np.asarray(linearised(replace(model, loads=strips), jnp.zeros(6))[0]) if strips else np.zeros((6, 6))
         strip_mass = strip_mass - np.asarray(model.body.mass_matrix()) if strips else strip_mass
         added = added + np.where(np.abs(strip_mass) > 1e-9 * np.abs(strip_mass).max(), strip_mass, 0.0)
-        text = f"Added mass of members, upright in still water, in rows of PER = 0 of {ROOT}.1: PropPot TRUE leaves drag alone."
+        why = "PropPot TRUE leaves drag alone" if flow.excitation else "HydroDyn loads no section in part"
+        text = f"Added mass of members, upright in still water, in rows of PER = 0 of {ROOT}.1: {why}."
         flow.say("coefficients: Ca_t, Ca_z", Treatment.APPROXIMATED, text)
     elif any(isinstance(load, ComputedAddedMass) and float(load.share) for load in model.loads):
         text = "Members keep their own added mass (Ca): without a table of excitation HydroDyn has no other place for it."

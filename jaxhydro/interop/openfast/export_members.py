@@ -17,7 +17,7 @@ import numpy as np
 from jaxhydro.hull.member import COLUMN_SPACING, PONTOON_SPACING
 from jaxhydro.interop.conversion import Treatment
 from jaxhydro.interop.export_source import ExportSource
-from jaxhydro.interop.openfast.export_pieces import Piece, PieceJoint, joints_of, pieces_of
+from jaxhydro.interop.openfast.export_pieces import Piece, PieceJoint, all_at_surface, joints_of, pieces_of
 from jaxhydro.interop.openfast.export_text import row
 from jaxhydro.interop.openfast.member_notes import MemberNotes
 
@@ -50,6 +50,7 @@ def member_tables(source: ExportSource, buoyant: bool, potential: bool) -> Membe
         buoyant: Whether HydroDyn computes the buoyancy of members; else its tables do.
         potential: Whether potential flow stands for the members (PropPot), so that drag alone is left to them.
     """
+    afloat = all_at_surface(source.members)
     tables, pieces = MemberTables(), pieces_of(source.members, float(source.model.environment.depth))
     joints, joint_at = joints_of(pieces)
     axial = [_axial(source, joint, tables.notes) for joint in joints]
@@ -65,7 +66,7 @@ def member_tables(source: ExportSource, buoyant: bool, potential: bool) -> Membe
     of_circles, of_boxes, rows = list[str](), list[str](), list[str]()
     for piece in pieces:
         circular = piece.member.circular
-        coefficients = _coefficients(source, piece, piece.number in diffracting, tables.notes)
+        coefficients = _coefficients(source, piece, piece.number in diffracting, afloat, tables.notes)
         (of_circles if circular else of_boxes).append(row(piece.number, *coefficients))
         sections = [(circles if circular else boxes)[_size(piece, end)] for end in (0, 1)]
         spacing = float(source.model.size) * (COLUMN_SPACING if piece.member.column else PONTOON_SPACING)
@@ -116,13 +117,17 @@ def _axial_law(law: Mapping[str, Any], piece: Piece, notes: MemberNotes) -> tupl
     return mode, 0.0, 1.0
 
 
-def _coefficients(source: ExportSource, piece: Piece, diffracting: bool, notes: MemberNotes) -> list[Any]:
-    """Coefficients of a member at both ends, the same with marine growth, of which there is none."""
+def _coefficients(source: ExportSource, piece: Piece, diffracting: bool, afloat: bool, notes: MemberNotes) -> list[Any]:
+    """Coefficients of a member at both ends, the same with marine growth, of which there is none.
+
+    Those of added mass are 0 where all members are `afloat`: their added mass is in the table of radiation.
+    """
     member = piece.member
     drag, mass = (
         [source.coefficient(member, f"{symbol}_{kind}") for kind in ("tt" if member.column else "tz")]
         for symbol in ("Cd", "Ca")
     )
+    mass = [0.0, 0.0] if afloat else mass
     if member.circular:
         for name, pair in (("Cd_t, Cd_z", drag), ("Ca_t, Ca_z", mass)):
             if pair[0] != pair[1]:
@@ -196,10 +201,13 @@ def _tell(source: ExportSource, piece: Piece, notes: MemberNotes) -> None:
         notes.add(piece.number, "Ca_z, Cd_z", Treatment.TAKEN, text)
     if member.floats and (piece.ends[:, 2] > 0.0).all():
         text = (
-            "Its axis is above still water, and HydroDyn loads nodes under water alone. So in still water it has no added "
-            "mass and no drag in OpenFAST."
+            "Its axis is above still water, and HydroDyn loads nodes under water alone. In OpenFAST it has no drag and no wave "
+            f"force{'' if all_at_surface(source.members) else ', and no added mass'}. Wave forces need a table of excitation."
         )
         notes.add(piece.number, "coefficients", Treatment.LEFT_OUT, text)
     elif member.pierced:
-        text = "Still water cuts it lengthwise: HydroDyn loads the whole section of nodes under water, and of others none."
+        text = (
+            "Still water cuts it lengthwise: HydroDyn loads the whole section of nodes under water, and of others none. Wave "
+            "forces need a table of excitation."
+        )
         notes.add(piece.number, "coefficients", Treatment.APPROXIMATED, text)

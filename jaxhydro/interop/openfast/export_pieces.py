@@ -104,6 +104,15 @@ def pieces_of(members: Sequence[Member], depth: float) -> list[Piece]:
     return pieces
 
 
+def all_at_surface(members: Sequence[Member]) -> bool:
+    """Whether still water cuts all members lengthwise, as a barge.
+
+    HydroDyn loads the whole section of nodes under water, and no others. Their added mass comes and goes with a node's height,
+    and OpenFAST then does not converge.
+    """
+    return bool(members) and all(member.floats for member in members)
+
+
 def _spans(member: Member) -> Iterator[tuple[float, float, Float[np.ndarray, "2 2"]]]:
     """First and last fraction of the length, and sizes (m) there, of each part between stations.
 

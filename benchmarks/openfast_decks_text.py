@@ -1,0 +1,125 @@
+"""Text of the page of `benchmarks.openfast_decks`, from its raw results alone."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from benchmarks.openfast_decks_cases import CASES, HEIGHT, HS, TP
+
+UNITS = {"surge": (1.0, "m"), "heave": (1.0, "m"), "pitch": (180 / math.pi, "deg")}
+KINDS = {"regular": f"regular, {HEIGHT:g} m, 10.24 s", "sea": f"sea, Hs {HS:g} m, Tp {TP:g} s"}
+MOTIONS = ("own", "read_back")
+MADE = (
+    "Made by `python -m benchmarks.openfast_decks OPENFAST` with OpenFAST 5.0.0 (commit 2895884d2, double precision, gfortran "
+    "12.2). Every deck is run as exported first. Then offsets, waves, duration, step and output are set."
+)
+COLUMNS = (
+    "*Here* is the platform itself in this package. The *deck read back* is the platform that `jaxhydro convert` makes of the "
+    "deck: its loads have the forms that the deck has. What differs between both is told in export.md."
+)
+ON_DECAYS = (
+    "Errors are the largest over the record, over the initial offset. Periods and decrements are means of up to eight half "
+    "cycles."
+)
+ON_WAVES = (
+    "Waves are the same components in both programs, from the start without a ramp. Differences are those of the time series "
+    "after the transient, over OpenFAST's standard deviation."
+)
+RUN_HEAD = ("platform", "run", "messages of OpenFAST", "largest motion (m, deg)", "largest difference (m, deg)")
+DECAY_HEAD = (
+    *("platform", "motion", "offset", "period in OpenFAST (s)", "decrement", "period here", "largest error"),
+    *("period of the deck read back", "its largest error"),
+)
+WAVE_HEAD = (
+    *("platform", "waves", "motion", "standard deviation in OpenFAST", "here", "rms of the difference"),
+    *("deck read back", "its rms of the difference"),
+)
+
+
+def table(head: tuple[str, ...], rows: list[list[str]]) -> str:
+    """A table in Markdown."""
+    return "\n".join(f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows))
+
+
+def percent(share: float, signed: bool = False) -> str:
+    """A share as people read it: to 0.01 %."""
+    if not math.isfinite(share):
+        return "-"
+    if abs(share) < 5e-5:
+        return "< 0.005 %"
+    return f"{100 * share:{'+' if signed else ''}.2f} %"
+
+
+def text(results: Mapping[str, Any]) -> str:
+    """The page.
+
+    Args:
+        results: Raw results by platform.
+    """
+    parts = ["# Exported decks in OpenFAST", _summary(results), MADE, COLUMNS]
+    parts += ["## Decks as exported, unedited", table(RUN_HEAD, list(_runs(results)))]
+    parts += ["## Decays", ON_DECAYS, table(DECAY_HEAD, list(_decays(results)))]
+    parts += ["## Waves", ON_WAVES, table(WAVE_HEAD, list(_waves(results)))]
+    return "\n\n".join(parts) + "\n"
+
+
+def _summary(results: Mapping[str, Any]) -> str:
+    ran = sum(not result["unedited"]["status"] for result in results.values())
+    cycles = [d for result in results.values() for d in result["decays"].values() if not d["status"]]
+    motions = [w[dof] for result in results.values() for w in result["waves"].values() if not w["status"] for dof in UNITS]
+    parts = [f"{ran} of {len(results)} exported decks run in OpenFAST as they are."]
+    if cycles:
+        largest = [max(decay[key]["error"] for decay in cycles) for key in MOTIONS]
+        words = f"{len(cycles)} decays differ by at most {percent(largest[0])} of the offset"
+        parts.append(f"{words}, and by {percent(largest[1])} where the loads have the deck's forms.")
+    if motions:
+        largest = [max(abs(motion[key]["std"] / motion["openfast"] - 1) for motion in motions) for key in MOTIONS]
+        words = f"{len(motions)} standard deviations in waves differ by at most {percent(largest[0])}"
+        parts.append(f"{words}, and by {percent(largest[1])} where the loads have the deck's forms.")
+    return " ".join(parts)
+
+
+def _runs(results: Mapping[str, Any]) -> Iterator[list[str]]:
+    for name, result in results.items():
+        run = result["unedited"]
+        if run["status"]:
+            yield [CASES[name].title, f"stopped, status {run['status']}", "; ".join(run["messages"]), "-", "-"]
+            continue
+        sizes = [
+            max(*values[:3], *(math.degrees(value) for value in values[3:])) for values in (run["largest"], run["difference"])
+        ]
+        yield [
+            CASES[name].title,
+            f"{run['seconds']:g} s",
+            "; ".join(run["messages"]) or "none",
+            *(f"{size:.2g}" for size in sizes),
+        ]
+
+
+def _decays(results: Mapping[str, Any]) -> Iterator[list[str]]:
+    for name, result in results.items():
+        for dof, decay in result["decays"].items():
+            factor, unit = UNITS[dof]
+            if decay["status"]:
+                yield [CASES[name].title, dof, "-", "stopped", *["-"] * 5]
+                continue
+            row = [CASES[name].title, dof, f"{decay['offset'] * factor:.3g} {unit}"]
+            row += [f"{decay['period']:.4g}", f"{decay['decrement']:.4f}"]
+            for key in MOTIONS:
+                row += [percent(decay[key]["period"] / decay["period"] - 1, signed=True), percent(decay[key]["error"])]
+            yield row
+
+
+def _waves(results: Mapping[str, Any]) -> Iterator[list[str]]:
+    for name, result in results.items():
+        for kind, waves in result["waves"].items():
+            for dof, (factor, unit) in UNITS.items():
+                if waves["status"]:
+                    yield [CASES[name].title, KINDS[kind], dof, "stopped", *["-"] * 4]
+                    continue
+                motion = waves[dof]
+                row = [CASES[name].title, KINDS[kind], dof, f"{motion['openfast'] * factor:.3g} {unit}"]
+                for key in MOTIONS:
+                    row += [percent(motion[key]["std"] / motion["openfast"] - 1, signed=True)]
+                    row += [percent(motion[key]["difference"] / motion["openfast"])]
+                yield row
