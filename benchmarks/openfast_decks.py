@@ -18,7 +18,6 @@ import json
 import shutil
 import tempfile
 import time
-from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -26,16 +25,13 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
-from ruamel.yaml import YAML
 
 import jaxhydro as jh
 from benchmarks.openfast_decks_cases import CASES, HEIGHT, HS, TP, Case
+from benchmarks.openfast_decks_export import read_back, written
 from benchmarks.openfast_decks_run import TEXT_OUTPUT, Run, add_waves, edit, initial, run
 from benchmarks.openfast_decks_text import text
-from jaxhydro.cli.export_command import source_of
 from jaxhydro.dynamics.response import decay_cycles
-from jaxhydro.interop.converters import convert_file
-from jaxhydro.interop.openfast.export_deck import export_deck
 from jaxhydro.waves.components import components
 from jaxhydro.waves.irregular import spectrum_components
 
@@ -51,27 +47,6 @@ def platform_of(case: Case) -> jh.Platform:
     """The platform of a case."""
     raw = jh.load_platform(case.platform).model_dump(exclude_unset=True)
     return jh.Platform.model_validate(raw | dict(case.changes))
-
-
-def written(platform: jh.Platform, folder: Path) -> dict[str, int]:
-    """Write a platform's deck into a new folder; numbers of its items by what became of them."""
-    exported = export_deck(source_of(platform, jh.build(platform)))
-    folder.mkdir()
-    for name, content in exported.texts.items():
-        (folder / name).write_text(content, encoding="utf-8")
-    for name, path in exported.files.items():
-        shutil.copyfile(path, folder / name)
-    return dict(Counter(item.treatment.value for item in exported.items))
-
-
-def read_back(deck: Path, folder: Path) -> jh.Model:
-    """Model of a deck, by way of its platform file in a new folder."""
-    conversion = convert_file(deck / "main.fst")
-    folder.mkdir()
-    for name, path in conversion.files.items():
-        shutil.copyfile(path, folder / name)
-    YAML().dump(conversion.platform, folder / "platform.yaml")
-    return jh.build(jh.load_platform(folder / "platform.yaml"))
 
 
 def moved(models: Mapping[str, jh.Model], result: Run, start: Float[np.ndarray, "6"], sea: Any = None) -> dict[str, Any]:
@@ -130,7 +105,7 @@ def compared(executable: str, case: Case, folder: Path) -> dict[str, Any]:
     platform = platform_of(case)
     results: dict[str, Any] = {"items": written(platform, folder / "deck")}
     model = jh.build(platform)
-    models = {"own": model, "read_back": read_back(folder / "deck", folder / "platform")}
+    models = {"own": model, "read_back": read_back(folder / "deck" / "main.fst", folder / "platform")}
     rest = np.asarray(jh.equilibrium(model))
 
     def deck(name: str, duration: float, start: Float[np.ndarray, "6"]) -> Path:

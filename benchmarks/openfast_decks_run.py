@@ -94,11 +94,21 @@ def run(executable: Path | str, deck: Path, timeout: float = 3600.0) -> Run:
     done = subprocess.run([str(executable), "main.fst"], cwd=deck, capture_output=True, text=True, timeout=timeout, check=False)
     log = done.stdout + done.stderr
     (deck / "log.txt").write_text(log, encoding="utf-8")
-    lines = [line.strip() for line in log.splitlines()]
+    return outcome(deck, done.returncode)
+
+
+def outcome(deck: Path, status: int) -> Run:
+    """Result of a run that has ended, from its log.txt and its output.
+
+    Args:
+        deck: Folder of the deck.
+        status: Exit status of OpenFAST.
+    """
+    lines = [line.strip() for line in (deck / "log.txt").read_text(encoding="utf-8").splitlines()]
     messages = tuple(line for line in lines if TROUBLE.search(line) and not HARMLESS.search(line))
     output = next((deck / name for name in ("main.out", "main.outb") if (deck / name).exists()), None)
-    if done.returncode or output is None:
-        return Run(done.returncode or 1, messages, np.zeros(0), np.zeros((6, 0)), np.zeros(0))
+    if status or output is None:
+        return Run(status or 1, messages, np.zeros(0), np.zeros((6, 0)), np.zeros(0))
     table = read_table(output)
     motion = np.stack([table[name].to_numpy(float) for name in CHANNELS])
     motion[3:] = np.radians(motion[3:])

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import jaxhydro as jh
-from benchmarks.openfast_decks import SMALL_GRID, written
+from benchmarks.openfast_decks import SMALL_GRID
+from benchmarks.openfast_decks_export import written
 from benchmarks.openfast_decks_run import TEXT_OUTPUT, edit, initial, run
 
 OPENFAST = shutil.which("openfast")
