@@ -36,6 +36,7 @@ from jaxhydro.waves.components import components
 from jaxhydro.waves.irregular import spectrum_components
 
 RAW, TEXT = (Path(__file__).with_name(f"results-openfast-decks.{ending}") for ending in ("json", "md"))
+LINES = Path(__file__).with_name("results-openfast-lines.json")  # of benchmarks.openfast_lines
 REPEAT = 1024.0  # s, after which the waves repeat
 WAVE_HARMONIC = 100  # of that: a period of 10.24 s
 BAND = (0.03, 0.25)  # Hz
@@ -170,7 +171,7 @@ def main(arguments: list[str] | None = None) -> None:
         print(f"  {time.monotonic() - begin:.0f} s", flush=True)
         ordered = {key: results[key] for key in CASES if key in results}
         RAW.write_text(json.dumps(ordered, indent=1) + "\n", encoding="utf-8")
-    TEXT.write_text(text(results), encoding="utf-8")
+    TEXT.write_text(text(results, json.loads(LINES.read_text("utf-8"))), encoding="utf-8")
     print(TEXT)
 
 

@@ -26,6 +26,7 @@ class Case(NamedTuple):
         waves: Whether it is run in waves.
         duration_in_waves: Duration in waves, s.
         transient: Of that, left out, s.
+        lines: Whether MoorDyn has its mooring lines.
         step: Time step of OpenFAST in decays and waves (s), or None: that of the deck.
         changes: Sections of the platform file that replace the platform's own.
     """
@@ -37,6 +38,7 @@ class Case(NamedTuple):
     waves: bool = True
     duration_in_waves: float = 500.0
     transient: float = 150.0
+    lines: bool = False
     step: float | None = 0.05
     changes: Mapping[str, Any] = {}
 
@@ -46,7 +48,7 @@ CASES: dict[str, Case] = {
     "volturnus-s": Case("VolturnUS-S", "volturnus-s"),
     "oc4-deepcwind": Case("OC4-DeepCwind", "oc4-deepcwind"),
     "volturnus-s-catenaries": Case(
-        "VolturnUS-S with catenaries", "volturnus-s", waves=False, step=None, changes={"mooring": CATENARIES}
+        "VolturnUS-S with catenaries", "volturnus-s", waves=False, lines=True, step=None, changes={"mooring": CATENARIES}
     ),
     "mit-nrel-tlp": Case(
         "MIT/NREL TLP",
@@ -54,6 +56,7 @@ CASES: dict[str, Case] = {
         {"surge": 5.0, "heave": 0.1, "pitch": 0.002},
         duration=120.0,
         waves=False,
+        lines=True,
         step=None,
     ),
     "oc3-monopile": Case(

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from benchmarks.openfast_decks_cases import CASES, HEIGHT, HS, TP
+from benchmarks.openfast_decks_reasons import LINES, LINES_HEAD, ON_LINES, REASONS
 
 UNITS = {"surge": (1.0, "m"), "heave": (1.0, "m"), "pitch": (180 / math.pi, "deg")}
 KINDS = {"regular": f"regular, {HEIGHT:g} m, 10.24 s", "sea": f"sea, Hs {HS:g} m, Tp {TP:g} s"}
@@ -50,33 +51,52 @@ def percent(share: float, signed: bool = False) -> str:
     return f"{100 * share:{'+' if signed else ''}.2f} %"
 
 
-def text(results: Mapping[str, Any]) -> str:
+def text(results: Mapping[str, Any], lines: Mapping[str, Any]) -> str:
     """The page.
 
     Args:
         results: Raw results by platform.
+        lines: Raw results of `benchmarks.openfast_lines`.
     """
     parts = ["# Exported decks in OpenFAST", _summary(results), MADE, COLUMNS]
     parts += ["## Decks as exported, unedited", table(RUN_HEAD, list(_runs(results)))]
     parts += ["## Decays", ON_DECAYS, table(DECAY_HEAD, list(_decays(results)))]
     parts += ["## Waves", ON_WAVES, table(WAVE_HEAD, list(_waves(results)))]
+    parts += ["## Reasons", REASONS]
+    parts += ["## Slow motions on catenaries", ON_LINES, table(LINES_HEAD, list(_lines(lines)))]
     return "\n\n".join(parts) + "\n"
 
 
 def _summary(results: Mapping[str, Any]) -> str:
     ran = sum(not result["unedited"]["status"] for result in results.values())
-    cycles = [d for result in results.values() for d in result["decays"].values() if not d["status"]]
-    motions = [w[dof] for result in results.values() for w in result["waves"].values() if not w["status"] for dof in UNITS]
     parts = [f"{ran} of {len(results)} exported decks run in OpenFAST as they are."]
-    if cycles:
-        largest = [max(decay[key]["error"] for decay in cycles) for key in MOTIONS]
-        words = f"{len(cycles)} decays differ by at most {percent(largest[0])} of the offset"
-        parts.append(f"{words}, and by {percent(largest[1])} where the loads have the deck's forms.")
+    for lines, moorings in ((False, "on moorings of a matrix"), (True, "on MoorDyn's lines")):
+        decays = [
+            decay
+            for name, result in results.items()
+            for decay in result["decays"].values()
+            if not decay["status"] and CASES[name].lines is lines
+        ]
+        if decays:
+            error = max(decay["own"]["error"] for decay in decays)
+            period = max(abs(decay["own"]["period"] / decay["period"] - 1) for decay in decays)
+            words = f"{len(decays)} decays {moorings} differ from OpenFAST's by at most {percent(error)} of the offset"
+            parts.append(f"{words} and {percent(period)} in period.")
+    motions = [
+        result["waves"]["regular"][dof]
+        for result in results.values()
+        if not result["waves"].get("regular", {"status": 1})["status"]
+        for dof in UNITS
+    ]
     if motions:
         largest = [max(abs(motion[key]["std"] / motion["openfast"] - 1) for motion in motions) for key in MOTIONS]
-        words = f"{len(motions)} standard deviations in waves differ by at most {percent(largest[0])}"
-        parts.append(f"{words}, and by {percent(largest[1])} where the loads have the deck's forms.")
+        words = f"{len(motions)} motions in a regular wave differ by at most {percent(largest[0])} in standard deviation"
+        parts.append(f"{words}; {_shared(motions)} of them differ by at most 1.5 % where the loads have the deck's forms.")
     return " ".join(parts)
+
+
+def _shared(motions: list[dict[str, Any]]) -> int:
+    return sum(abs(motion["read_back"]["std"] / motion["openfast"] - 1) <= 0.015 for motion in motions)
 
 
 def _runs(results: Mapping[str, Any]) -> Iterator[list[str]]:
@@ -123,3 +143,9 @@ def _waves(results: Mapping[str, Any]) -> Iterator[list[str]]:
                     row += [percent(motion[key]["std"] / motion["openfast"] - 1, signed=True)]
                     row += [percent(motion[key]["difference"] / motion["openfast"])]
                 yield row
+
+
+def _lines(lines: Mapping[str, Any]) -> Iterator[list[str]]:
+    for name, title in LINES.items():
+        run = lines[name]
+        yield [title, f"{run['mean_surge']:.3f}", *(f"{value:.3f}" for key in ("slow", "waves") for value in run[key])]

@@ -152,7 +152,10 @@ def _forms(source: ExportSource) -> Iterator[ConvertedItem]:
     else:
         yield ConvertedItem("directions", Treatment.TAKEN, "Axes of the upright platform, as in HydroDyn.")
     if forms.wetting == "instantaneous":
-        text = "WaveStMod 1 and AMMod 1. Buoyancy is that up to still water (HstMod 0), as here."
+        text = (
+            "WaveStMod 1 and AMMod 1. Buoyancy is that up to still water (HstMod 0), as here. HydroDyn spreads the load of the "
+            "piece at the surface over two nodes: mean and slow surge in waves differ a little."
+        )
         yield ConvertedItem("wetting", Treatment.TAKEN, text)
     else:
         yield ConvertedItem("wetting", Treatment.TAKEN, "WaveStMod 0 and AMMod 0.")

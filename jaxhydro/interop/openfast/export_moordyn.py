@@ -94,7 +94,8 @@ def moordyn_file(source: ExportSource, load: CatenaryLines, name: str) -> tuple[
             fairleads.append(number)
     text = (
         f"{name}: lines with weight and axial stiffness as here. MoorDyn adds their inertia, drag and damping, which the "
-        "tuned model has not. Cd 2.0, Ca 0.82, CdAx 0.4 and CaAx 0.27 are those of the public IEA 15 MW deck."
+        "tuned model has not: they damp slow motions. Cd 2.0, Ca 0.82, CdAx 0.4 and CaAx 0.27 are those of the public deck "
+        "of the IEA 15 MW platform."
     )
     items.append(ConvertedItem("mooring", Treatment.APPROXIMATED, text))
     if float(load.seabed_friction):
