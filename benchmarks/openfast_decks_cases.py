@@ -62,8 +62,7 @@ CASES: dict[str, Case] = {
     "oc3-monopile": Case(
         "OC3 monopile",
         "oc3-monopile",
-        {"surge": 0.01, "pitch": 0.001},
-        duration=20.0,
+        {},
         waves=False,
         step=None,
     ),
