@@ -1,4 +1,4 @@
-"""WAMIT's result folder: its tables, and water, volume, mass and body's place by the .out file."""
+"""WAMIT's result folder: its tables, and water, volume, mass and body's place by the .out and .mmx files."""
 
 import re
 from pathlib import Path
@@ -10,6 +10,7 @@ from jaxhydro.interop.conversion import Treatment
 from jaxhydro.interop.panel_results.fixed_text import matrix_after, numbers_after, text_of, to_float
 from jaxhydro.interop.panel_results.panel_case import PanelCase
 from jaxhydro.interop.panel_results.rigid_mass import is_rigid
+from jaxhydro.interop.panel_results.wamit_mass_file import add_mass_file, find_mass_file
 from jaxhydro.interop.panel_results.wamit_tables_case import add_tables, with_ending
 from jaxhydro.interop.wamit_hydrostatics import VOLUMES, read_hydrostatics
 
@@ -31,10 +32,15 @@ def read_wamit_folder(folder: Path, root: str | None = None) -> PanelCase:
         InputError: A file is broken, the body is not at the origin, or the first column is a wave number.
     """
     case = PanelCase("WAMIT", root or "")
-    length = _by_out(case, folder) or _by_gdf(case, folder) or 1.0
+    length = _by_out(case, folder)
+    masses = find_mass_file(folder, root)
+    if masses is not None:
+        add_mass_file(case, masses)
+        length = length or masses.length
+    length = length or _by_gdf(case, folder) or 1.0
     if case.depth is None:
         _by_pot(case, folder)
-    add_tables(case, folder, root, length, _column(case, folder))
+    add_tables(case, folder, root, length, _column(case, folder), None if masses is None else float(masses.gravity_centre[2]))
     return case
 
 

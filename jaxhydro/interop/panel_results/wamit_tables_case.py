@@ -5,6 +5,7 @@ from typing import Any
 
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.conversion import Treatment
+from jaxhydro.interop.openfast.mass_parts import tidy
 from jaxhydro.interop.panel_results.panel_case import PanelCase
 from jaxhydro.interop.wamit_excitation import read_directional_excitation
 from jaxhydro.interop.wamit_hydrostatics import read_hydrostatics
@@ -43,7 +44,7 @@ def with_ending(folder: Path, ending: str, root: str | None = None) -> Path | No
     return names[0] if names else None
 
 
-def add_tables(case: PanelCase, folder: Path, root: str | None, length: float, by: str) -> None:
+def add_tables(case: PanelCase, folder: Path, root: str | None, length: float, by: str, weight_at: float | None = None) -> None:
     """Add the tables of a folder to a case, which has its water.
 
     Args:
@@ -52,6 +53,8 @@ def add_tables(case: PanelCase, folder: Path, root: str | None, length: float, b
         root: Their name without ending; None: each ending once.
         length: Unit of length L of the files (m).
         by: What their first column is: "period", "rad/s" or "Hz".
+        weight_at: Height (m) of the centre of mass whose weight C44 and C55 of the .hst file include, with the case's volume;
+            None: not stated.
 
     Raises:
         InputError: A table is broken, there are several, or there is neither radiation nor excitation.
@@ -84,12 +87,22 @@ def add_tables(case: PanelCase, folder: Path, root: str | None, length: float, b
         case.keys["drift"] = entry(path)
         case.say(path.name, Treatment.TAKEN, "`drift`: forces at difference frequencies, all pairs of frequencies.")
     if (path := tables.get(".hst")) and "hydrostatics" not in case.keys:
-        read_hydrostatics(path, density, gravity, length=length)
-        case.keys["hydrostatics"] = entry(path, without=("by",)) | {"weight": "included", "linear": True}
-        text = "`hydrostatics`: C33, C44, C55 and their couplings. C44 and C55 are taken to include the weight, as WAMIT's do."
-        case.say(path.name, Treatment.TAKEN, text)
-        hint = "The file does not say which weight C44 and C55 include. Of files made for OpenFAST: `weight: excluded`."
-        case.say("hydrostatics.weight", Treatment.TO_FILL_IN, hint)
+        statics = read_hydrostatics(path, density, gravity, length=length)
+        case.keys["hydrostatics"] = entry(path, without=("by",)) | {"linear": True}
+        if weight_at is None or case.volume is None:
+            case.keys["hydrostatics"] |= {"weight": "included"}
+            text = (
+                "`hydrostatics`: C33, C44, C55 and their couplings. C44 and C55 are taken to include the weight, as WAMIT's do."
+            )
+            case.say(path.name, Treatment.TAKEN, text)
+            hint = "The file does not say which weight C44 and C55 include. Of files made for OpenFAST: `weight: excluded`."
+            case.say("hydrostatics.weight", Treatment.TO_FILL_IN, hint)
+        else:
+            moment = density * gravity * case.volume * weight_at  # of the displaced water's weight, as WAMIT has it
+            buoyancy = {f"{key}_buoyancy": tidy(float(statics.stiffness[i, i]) + moment) for key, i in (("C44", 3), ("C55", 4))}
+            case.keys["hydrostatics"] |= {"displaced_volume": case.volume} | buoyancy
+            text = f"C44 and C55 include the weight at z = {weight_at:g} m: it is replaced by that of `rigid_body`."
+            case.say(path.name, Treatment.TAKEN, f"`hydrostatics`: C33, C44, C55 and their couplings. {text}")
     for path in sorted(folder.iterdir()):
         if (what := OTHERS.get(path.suffix.lower())) and root in (None, path.stem):
             case.say(path.name, Treatment.LEFT_OUT, f"There is no key for {what}.")
