@@ -64,8 +64,13 @@ Spreading = Annotated[
 SeaFile = Annotated[
     Path | None,
     _option(
-        "--sea-file", SEVERAL, "Directional spectrum: CSV or NetCDF with efth (m2/Hz/deg) over freq (Hz) and dir (deg, from)."
+        "--sea-file",
+        SEVERAL,
+        "Spectrum: CSV or NetCDF with efth (m2/Hz/deg) over freq (Hz) and dir (deg, from), or NDBC's text, SWAN, WW3.",
     ),
+]
+SeaTime = Annotated[
+    str | None, _option("--sea-time", SEVERAL, "Time (UTC) of --sea-file's spectrum, as 2019-02-06T00:40.", "its only one")
 ]
 Bearing = Annotated[
     float | None, _option("--x-bearing", SEVERAL, "Compass bearing of the platform's x axis, deg, with --sea-file.", "0")

@@ -1,19 +1,24 @@
 """Seas of several headings from the command-line options."""
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 from jaxhydro.cli.options import finite, positive, wrong
 from jaxhydro.dynamics.requested_sea import MeasuredDirections, RequestedSea
 from jaxhydro.errors import suggest
-from jaxhydro.interop.directional_file import read_directional_spectrum
+from jaxhydro.interop.directional_file import read_sea_file
 from jaxhydro.waves.directional_spectrum import SHAPES, WaveSystem
 from jaxhydro.waves.spectra import MAX_ENHANCEMENT
+from jaxhydro.waves.tabulated_sea import TabulatedFrequencies
 
 EXAMPLE = '--sea "hs=2 tp=14 heading=30"'
 KEYS = ("hs", "tp", "gamma", "heading", "spreading", "spectrum")
-OTHERS = ("--hs", "--tp", "--gamma", "--spectrum", "--spreading", "--wave")  # options that `--sea` and `--sea-file` replace
+OTHERS = ("--hs", "--tp", "--gamma", "--spectrum", "--wave")  # options that `--sea` and `--sea-file` replace
+TIMES = ("%Y-%m-%dT%H:%M", "%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M:%S")  # of --sea-time
 
 
 def check_exponent(value: float, option: str, key: str = "") -> float:
@@ -69,19 +74,15 @@ def asked(options: Mapping[str, Any], heading: float, common: dict[str, Any]) ->
     many, file = options.get("--sea"), options.get("--sea-file")
     if many and file:
         raise wrong("--sea-file", "--sea says what the sea is: not both")
-    if "--x-bearing" in options and not file:
-        raise wrong("--x-bearing", "a directional spectrum expected with it, --sea-file FILE")
-    if name := next((option for option in OTHERS if option in options and (many or file)), None):
+    if (alone := [name for name in ("--x-bearing", "--sea-time") if name in options]) and not file:
+        raise wrong(alone[0], "a spectrum expected with it, --sea-file FILE")
+    others = OTHERS if file else (*OTHERS, "--spreading")
+    if name := next((option for option in others if option in options and (many or file)), None):
         raise wrong(name, f"{'--sea' if many else '--sea-file'} says what the sea is: not both")
-    if (many or file) and heading != 0.0:
-        setting = "heading= of --sea" if many else "--x-bearing"
-        raise wrong("--heading", f"the sea has its own: {setting}")
+    if many and heading != 0.0:
+        raise wrong("--heading", "the sea has its own: heading= of --sea")
     if file:
-        bearing = finite(options.get("--x-bearing", 0.0), "--x-bearing")
-        measured = MeasuredDirections(str(file), read_directional_spectrum(Path(file), bearing), bearing)
-        hs, tp, mean = measured.summary()
-        order = options.get("--order", 1)
-        return RequestedSea(hs, tp, None, "measured", heading=mean, measured=measured, order=order, **common)
+        return _of_file(Path(file), options, heading, common)
     if many:
         systems = tuple(system(text) for text in many)
     elif "--spreading" in options:
@@ -90,6 +91,37 @@ def asked(options: Mapping[str, Any], heading: float, common: dict[str, Any]) ->
         return None
     sea = RequestedSea.of_systems(systems, order=options.get("--order", 1), **common)
     return RequestedSea.of_systems(systems, order=options.get("--order", 2), **common) if sea.long_crested else sea
+
+
+def _of_file(file: Path, options: Mapping[str, Any], heading: float, common: dict[str, Any]) -> RequestedSea:
+    """Sea of `--sea-file`. Without directions in the file `--heading` and `--spreading` say them."""
+    bearing = finite(options.get("--x-bearing", 0.0), "--x-bearing")
+    spectrum = read_sea_file(file, bearing, _time(options.get("--sea-time")))
+    if isinstance(spectrum, TabulatedFrequencies):
+        if "--x-bearing" in options:
+            raise wrong("--x-bearing", "the file has no directions: --heading says where the waves travel to")
+        exponent = check_exponent(options["--spreading"], "--spreading") if "--spreading" in options else None
+        spectrum = replace(spectrum, mean_heading=math.radians(heading), spreading=exponent)
+    elif "--spreading" in options:
+        raise wrong("--spreading", "--sea-file says what the sea is: not both")
+    elif heading != 0.0:
+        raise wrong("--heading", "the sea has its own: --x-bearing")
+    measured = MeasuredDirections(str(file), spectrum, bearing, str(options.get("--sea-time", "")))
+    hs, tp, mean = measured.summary()
+    order = options.get("--order", 2 if spectrum.long_crested else 1)
+    return RequestedSea(hs, tp, None, "measured", heading=mean, measured=measured, order=order, **common)
+
+
+def _time(text: str | None) -> datetime | None:
+    """Time of `--sea-time`. Raises BadParameter."""
+    for form in TIMES if text is not None else ():
+        try:
+            return datetime.strptime(str(text), form)
+        except ValueError:
+            continue
+    if text is None:
+        return None
+    raise wrong("--sea-time", f"a time as 2019-02-06T00:40 expected, found {text!r}")
 
 
 def _spread(options: Mapping[str, Any], heading: float) -> WaveSystem:

@@ -42,6 +42,7 @@ def simulate(
     sea: arguments.Sea = None,
     spreading: arguments.Spreading = None,
     sea_file: arguments.SeaFile = None,
+    sea_time: arguments.SeaTime = None,
     x_bearing: arguments.Bearing = None,
     wave: arguments.Wave = None,
     wave_column: arguments.WaveColumn = None,

@@ -10,10 +10,9 @@ from jaxhydro.waves import wave_bands
 from jaxhydro.waves.directional_spectrum import (
     AbstractDirectionalSpectrum,
     SystemsSpectrum,
-    TabulatedDirections,
     WaveSystem,
 )
-from jaxhydro.waves.spreading import circular_moments
+from jaxhydro.waves.tabulated_sea import TabulatedDirections, TabulatedFrequencies
 
 MIN_SAMPLES = 100  # samples after the transient
 TRANSIENT = 500.0  # s times its pace, at most TRANSIENT_SHARE of the duration
@@ -46,26 +45,26 @@ class Record:
 
 @dataclass(frozen=True)
 class MeasuredDirections:
-    """Directional spectrum of a file.
+    """Spectrum of a file.
 
     Attributes:
         source: The file.
-        spectrum: The spectrum.
+        spectrum: The spectrum, with directions or without.
         x_bearing: Compass bearing of the platform's x axis (deg).
+        time: Time of the spectrum (UTC) as it was asked for, or "".
     """
 
     source: str
-    spectrum: TabulatedDirections
+    spectrum: TabulatedDirections | TabulatedFrequencies
     x_bearing: float
+    time: str = ""
 
     def summary(self) -> tuple[float, float, float]:
         """Significant height (m), peak period (s) and mean heading (deg)."""
         spectrum = self.spectrum
-        density = spectrum.values.sum(axis=1) * spectrum.bin_width
-        height = 4 * math.sqrt(float(np.trapezoid(density, spectrum.omega)))
-        energy = np.trapezoid(spectrum.values, spectrum.omega, axis=0)
-        mean = circular_moments(spectrum.heading, energy).mean
-        return height, 2 * math.pi / float(spectrum.omega[int(np.argmax(density))]), math.degrees(mean)
+        height = 4 * math.sqrt(float(np.trapezoid(spectrum.table, spectrum.omega)))
+        peak = float(spectrum.omega[int(np.argmax(spectrum.table))])
+        return height, 2 * math.pi / peak, math.degrees(spectrum.mean_heading)
 
 
 @dataclass(frozen=True)

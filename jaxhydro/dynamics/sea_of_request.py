@@ -191,6 +191,7 @@ def _from_spectrum(
         about |= {"mean_heading": math.degrees(moments.mean), "directional_width": math.degrees(moments.width)}
     if asked.measured is not None:
         about |= {"directional_spectrum": asked.measured.source, "x_bearing": asked.measured.x_bearing}
+        about |= {"sea_time": asked.measured.time} if asked.measured.time else {}
     elif len(asked.systems) > 1 or not asked.long_crested:
         about["systems"] = "; ".join(system.words for system in asked.systems)
     return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))

@@ -1,4 +1,4 @@
-"""Directional spectra: seas of several wave systems, and tables over direction.
+"""Directional spectra: seas of several wave systems. Those in tables are in `tabulated_sea`.
 
 Each system has its heading and spreading. A directional spectrum is E(omega, heading) = S(omega) D(heading; omega). A sea is
 drawn from it with one direction per frequency component. So its variance at every frequency is that of S, and it is the same
@@ -19,7 +19,7 @@ from jaxhydro.environment import Environment
 from jaxhydro.quick_jit import on_device
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.irregular import spectrum_components
-from jaxhydro.waves.spectra import SPECTRA, tabulated
+from jaxhydro.waves.spectra import SPECTRA
 from jaxhydro.waves.spreading import equal_energy_shares, spread_angle
 
 SHAPES = tuple(SPECTRA)  # names of spectra that a system may have
@@ -120,45 +120,6 @@ class SystemsSpectrum(AbstractDirectionalSpectrum):
                 inside = np.clip((share - below) / np.where(fraction > 0, fraction, 1.0), 0.0, 1.0)
                 heading = heading + spread_angle(system.spreading, inside)
             headings, below = np.where(mine, heading, headings), below + fraction
-        return headings
-
-
-@dataclass(frozen=True, eq=False)
-class TabulatedDirections(AbstractDirectionalSpectrum):
-    """Directional spectrum in a table, as measured or from a wave model.
-
-    Between frequencies E is linear; beyond them it is 0. Each direction stands for an even part of its bin.
-
-    Attributes:
-        omega: Angular frequencies (rad/s), ascending, (n,).
-        heading: Middles of the bins (rad), evenly ascending, (d,).
-        values: E (m² s/rad per rad), (n, d).
-    """
-
-    omega: Float[np.ndarray, " n"]
-    heading: Float[np.ndarray, " d"]
-    values: Float[np.ndarray, "n d"]
-
-    @property
-    def bin_width(self) -> float:
-        """Width of a bin of directions (rad)."""
-        return float(self.heading[1] - self.heading[0])
-
-    def density(self, omega: Float[Array, " w"]) -> Float[Array, " w"]:
-        return tabulated(omega, on_device(self.omega), on_device(self.values.sum(axis=1) * self.bin_width))
-
-    @property
-    def long_crested(self) -> bool:
-        return False
-
-    def headings(self, omega: Float[np.ndarray, " w"], share: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
-        edges = np.r_[self.heading - 0.5 * self.bin_width, self.heading[-1] + 0.5 * self.bin_width]
-        headings = np.empty(np.shape(omega))
-        for i, (w, part) in enumerate(zip(np.asarray(omega), share)):
-            energy = np.array([np.interp(w, self.omega, column, 0.0, 0.0) for column in self.values.T])
-            whole = energy.sum()
-            cumulative = np.r_[0.0, np.cumsum(energy) / whole] if whole > 0 else np.linspace(0, 1, len(edges))
-            headings[i] = np.interp(part, cumulative, edges)
         return headings
 
 

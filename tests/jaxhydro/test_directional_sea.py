@@ -186,7 +186,7 @@ def test_a_broken_file_is_told_in_one_message(tmp_path: Path, change: dict, word
     with pytest.raises(InputError) as error:
         read_directional_spectrum(as_csv(tmp_path / "sea.csv", **parts))
     assert words in str(error.value) and len(error.value.problems) == 1
-    with pytest.raises(InputError, match=r"none\.nc: expected a CSV or NetCDF file, found no such file"):
+    with pytest.raises(InputError, match=r"none\.nc: expected a CSV, NetCDF, NDBC or SWAN file, found no such file"):
         read_directional_spectrum(tmp_path / "none.nc")
     data = xr.Dataset({"efth": (("freq",), f)}, {"freq": f})
     data.to_netcdf(tmp_path / "flat.nc")

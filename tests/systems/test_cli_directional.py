@@ -21,8 +21,10 @@ SHORT = ("--duration", 60, "--dt", 0.5, "--transient", 0, "--no-figures")
         (("--sea", "hs=2 tp=9", "--heading", 20), "the sea has its own: heading= of --sea"),
         (("--hs", 2, "--tp", 9, "--spreading", -3), "a number from 0 to 10000 expected, found -3"),
         (("--spreading", 3), "a sea expected with it"),
-        (("--hs", 2, "--tp", 9, "--x-bearing", 3), "a directional spectrum expected with it, --sea-file FILE"),
-        (("--sea-file", "none.csv"), "expected a CSV or NetCDF file, found no such file"),
+        (("--hs", 2, "--tp", 9, "--x-bearing", 3), "a spectrum expected with it, --sea-file FILE"),
+        (("--hs", 2, "--tp", 9, "--sea-time", "2019-02-06T00:40"), "a spectrum expected with it, --sea-file FILE"),
+        (("--sea-file", "none.csv", "--sea-time", "noon"), "a time as 2019-02-06T00:40 expected, found 'noon'"),
+        (("--sea-file", "none.csv"), "expected a CSV, NetCDF, NDBC or SWAN file, found no such file"),
         (("--wave", "none.csv", "--spreading", 4), "a record of one gauge, which does not tell directions"),
         (("--hs", 2, "--tp", 9, "--spreading", 4, "--order", 2), "100 components at most"),
     ],
@@ -37,6 +39,20 @@ def test_a_file_without_directions_is_told(tmp_path: Path) -> None:
     (tmp_path / "flat.csv").write_text("freq,efth\n0.1,1\n0.2,1\n", encoding="utf-8")
     message = run("simulate", "oc3-hywind", "--sea-file", tmp_path / "flat.csv", "--out", tmp_path / "out", status=2)
     assert "expected a column dir, beside freq and efth, found freq, efth" in message, message
+
+
+def test_a_buoy_s_file_of_several_times(tmp_path: Path) -> None:
+    """NDBC's text: the times are told; without directions --x-bearing says nothing."""
+    rows = "2019 02 06 00 40 1.0 2.0 0.5\n2019 02 06 01 40 1.0 3.0 0.5\n"
+    (tmp_path / "buoy.txt").write_text("#YY MM DD hh mm .08 .10 .12\n" + rows, encoding="utf-8")
+    words = ("simulate", "oc3-hywind", "--sea-file", tmp_path / "buoy.txt", "--out", tmp_path / "out")
+    message = run(*words, status=2)
+    assert "expected one spectrum, found 2, from 2019-02-06T00:40 to 2019-02-06T01:40. --sea-time says which" in message, (
+        message
+    )
+    message = run(*words, "--sea-time", "2019-02-06T00:40", "--x-bearing", 20, status=2)
+    assert "the file has no directions: --heading says where the waves travel to" in message, message
+    assert not (tmp_path / "out" / "motion.csv").exists()
 
 
 @pytest.mark.slow
