@@ -107,19 +107,19 @@ def test_members_and_coefficients_come_back(trips: dict[str, RoundTrip], name: s
         returned_member, its = read[ends]
         assert its == pytest.approx(size, rel=SAME) and returned_member.circular is member.circular
         own, returned = coefficients(before, member), coefficients(after, returned_member)
-        for key in ("Ca_t", "Cd_t") if member.column else ("Ca_t", "Ca_z", "Cd_t", "Cd_z"):
+        tapers = bool(np.ptp(returned_member.sizes, axis=0).any())
+        for key in ("Ca_t", "Cd_t") if member.column and not tapers else ("Ca_t", "Ca_z", "Cd_t", "Cd_z"):
             assert returned[key] == pytest.approx(own[key] * (name != "iti-barge" or key[:2] == "Cd"), rel=SAME), (ends, key)
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_ends_have_the_same_added_mass_and_drag(trips: dict[str, RoundTrip], name: str) -> None:
     """Sum of Ca_z times volume, and sum of Cd_z times area, over all wet ends. Rings at steps are ends, too."""
-    if name == "oc3-hywind":  # the taper itself is loaded in HydroDyn by AxCd and AxCa along it, which the reader only names
+    if name == "oc3-hywind":  # the taper itself is loaded in HydroDyn by AxCd and AxCa along it
         assert "AxCd = 2 Cd_z" in said(trips[name].deck, "Ca_z, Cd_z", Treatment.TAKEN)
         rows = (trips[name].folder / "hydrodyn.dat").read_text(encoding="utf-8").splitlines()
         taper = next(row.split() for row in rows if row.startswith("2 ") and len(row.split()) == 29)
         assert [float(taper[i]) for i in (13, 17, 21)] == [1.2, 0.65, 1.0]
-        return
 
     def sums(platform: Platform) -> np.ndarray:
         model = build(platform)

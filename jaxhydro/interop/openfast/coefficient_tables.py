@@ -39,7 +39,8 @@ class MemberCoefficients:
         mass: Added mass alike, (2,).
         pressure: Cp, 1 for the keyword MCF.
         buoyancy: Cb.
-        axial: Largest of AxCd and AxCa along the member.
+        axial: AxCd and AxCa along the member, which act on tapers, (2,).
+        axial_pressure: AxCp along the member.
         varying: Whether they vary along it, and were averaged.
         diffracting: Whether Cp is the keyword MCF.
     """
@@ -48,7 +49,8 @@ class MemberCoefficients:
     mass: Float[np.ndarray, "2"]
     pressure: float
     buoyancy: float
-    axial: float
+    axial: Float[np.ndarray, "2"]
+    axial_pressure: float
     varying: bool
     diffracting: bool
 
@@ -134,5 +136,5 @@ def _combined(shape: str, rows: Sequence[TableRow], ends: Sequence[str], shares:
     drag, mass = (np.array([mean(name) for name in pair]) for pair in pairs)
     diffracting = any(row.cells[f"Cp{end}"].lower() == MACCAMY_FUCHS for row, end in zip(rows, ends))
     pressure = 1.0 if diffracting else mean("Cp")
-    buoyancy, axial = mean("Cb", 1.0), max(abs(mean("AxCd", 0.0)), abs(mean("AxCa")))
-    return MemberCoefficients(drag, mass, pressure, buoyancy, axial, varying, diffracting)
+    buoyancy, axial, axial_pressure = mean("Cb", 1.0), np.array([mean("AxCd", 0.0), mean("AxCa")]), mean("AxCp")
+    return MemberCoefficients(drag, mass, pressure, buoyancy, axial, axial_pressure, varying, diffracting)

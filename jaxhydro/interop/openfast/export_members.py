@@ -20,6 +20,7 @@ from jaxhydro.interop.export_source import ExportSource
 from jaxhydro.interop.openfast.export_pieces import Piece, PieceJoint, all_at_surface, joints_of, pieces_of
 from jaxhydro.interop.openfast.export_text import row
 from jaxhydro.interop.openfast.member_notes import MemberNotes
+from jaxhydro.interop.openfast.strip_members import BOX_SIDES
 
 BY_MEMBER = 3  # MCoefMod
 WALL = 0.01  # PropThck over the size: HydroDyn uses it for ballast alone, and there is none
@@ -143,7 +144,8 @@ def _coefficients(source: ExportSource, piece: Piece, diffracting: bool, afloat:
             notes.add(piece.number, "Ca_t, Ca_z", Treatment.APPROXIMATED, text)
     axial = [source.coefficient(member, name) if member.column and piece.tapers else 0.0 for name in ("Cd_z", "Ca_z")]
     pressure = ["MCF"] * 2 if diffracting else [1.0] * 2
-    ends = [*across, pressure, [2 * axial[0]] * 2, [axial[1]] * 2, [1.0] * 2, [1.0] * 2]
+    axial_mass = axial[1] if member.circular else axial[1] / BOX_SIDES
+    ends = [*across, pressure, [2 * axial[0]] * 2, [axial_mass] * 2, [1.0] * 2, [1.0] * 2]
     return [value for pair in ends for value in (*pair, *pair)]
 
 
@@ -197,7 +199,8 @@ def _tell(source: ExportSource, piece: Piece, notes: MemberNotes) -> None:
             key = f"drag_{name[-1]}"
             notes.add(piece.number, key, Treatment.LEFT_OUT, f"HydroDyn has no law {law} here; {name} is constant in the deck.")
     if piece.tapers and member.column:
-        text = "Along a taper AxCd = 2 Cd_z, AxCa = Ca_z and AxCp = 1, as at ends."
+        factor = "" if member.circular else " 2 / sqrt(pi)"
+        text = f"Along a taper AxCd = 2 Cd_z, AxCa = Ca_z{factor} and AxCp = 1."
         notes.add(piece.number, "Ca_z, Cd_z", Treatment.TAKEN, text)
     if member.floats and (piece.ends[:, 2] > 0.0).all():
         text = (

@@ -8,7 +8,7 @@ References:
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,6 +22,8 @@ from jaxhydro.interop.openfast.mass_parts import tidy
 from jaxhydro.interop.openfast.member_notes import MemberNotes
 
 _SAME = 1e-6  # relative difference of coefficients that counts as none
+BOX_SIDES = math.sqrt(math.pi) / 2  # Ca_z over AxCa on the sides of a tapered rectangle
+SLICE, SLICE_OF_SIZE, MAX_SLICE = 0.01, 0.02, 0.25  # of a length, of a size over the length, and at most: see `_spans`
 
 
 @dataclass
@@ -49,6 +51,11 @@ class ConvertedHull:
         name = kind if not names else f"{kind}{len(names) + 1}"
         self.coefficients[name] = values
         return name
+
+
+def tapers(member: HydroDynMember) -> bool:
+    """Whether a member's section changes along it."""
+    return bool(np.ptp(member.sizes, axis=0).any())
 
 
 def convert_members(members: Sequence[HydroDynMember], tables: CoefficientTables, potential_flow: bool) -> ConvertedHull:
@@ -94,9 +101,8 @@ def _tell(member: HydroDynMember, coefficients: MemberCoefficients, notes: Membe
         say("Cp", Treatment.APPROXIMATED, f"The waves' pressure acts with Cp = 1, not {coefficients.pressure:g}.")
     if coefficients.buoyancy != 1.0 and not member.potential:
         say("Cb", Treatment.LEFT_OUT, f"Buoyancy is that of the section, not {coefficients.buoyancy:g} times it.")
-    if coefficients.axial and np.ptp(member.sizes, axis=0).any():
-        text = "The sides of a tapered member take the axial coefficients of its end, not AxCd and AxCa along it."
-        say("AxCd, AxCa of members", Treatment.APPROXIMATED, text)
+    if tapers(member):
+        _tell_taper(member, coefficients, say)
     if coefficients.diffracting:
         text = "`maccamy_fuchs: true`. OpenFAST drops the phase lag and second-order accelerations; here both are kept."
         say("MCF", Treatment.APPROXIMATED, text)
@@ -109,8 +115,36 @@ def _tell(member: HydroDynMember, coefficients: MemberCoefficients, notes: Membe
     if member.shape == "rect" and (mode := member.row.whole("FDMod", 0)):
         text = "Drag by the flow at four faces, and its filter, has no counterpart; the vector of the flow decides here."
         say(f"FDMod {mode}", Treatment.APPROXIMATED, text)
-    if (coefficients.drag < 0).any() or (coefficients.mass < 0).any():
-        raise member.row.wrong("coefficients >= 0", f"{min(coefficients.drag.min(), coefficients.mass.min()):g}")
+    if (least := float(np.min([coefficients.drag, coefficients.mass, coefficients.axial]))) < 0:
+        raise member.row.wrong("coefficients >= 0", f"{least:g}")
+
+
+def _tell_taper(member: HydroDynMember, coefficients: MemberCoefficients, say: Callable[[str, Treatment, str], None]) -> None:
+    """Note what becomes of the axial coefficients along a taper."""
+    if coefficients.axial.any() and is_column(member):
+        mass = "Ca_z = 0, as potential flow stands for it" if member.potential else "Ca_z = AxCa"
+        mass += "" if member.shape == "circ" or member.potential else " sqrt(pi) / 2"
+        say("AxCd, AxCa of members", Treatment.TAKEN, f"On the sides of a tapered member Cd_z = AxCd / 2 and {mass}.")
+    elif coefficients.axial.any():
+        text = "The sides of a tapered member flatter than 45 deg have wave pressure only, along the member."
+        say("AxCd, AxCa of members", Treatment.LEFT_OUT, text)
+    if coefficients.axial_pressure != 1.0 and not member.potential:
+        text = f"The waves' pressure acts on the sides of a tapered member with AxCp = 1, not {coefficients.axial_pressure:g}."
+        say("AxCp of members", Treatment.APPROXIMATED, text)
+
+
+def _along_taper(member: HydroDynMember, coefficients: MemberCoefficients) -> EndCoefficients:
+    """Axial coefficients of the sides of a tapered member in this program's definitions.
+
+    HydroDyn has 1/2 AxCd rho pi r |dr| for the drag and 2 AxCa rho pi r² |dr| for the added mass of a circle. Here they are
+    1/2 Cd_z rho |dA| and Ca_z rho r |dA|, with A = pi r². HydroDyn's added mass of a rectangle is 1/2 AxCa rho A^(1/2) |dA|.
+
+    References:
+        OpenFAST v5.0.0 (2895884), Morison.f90: Morison_CalcOutput (f_hydro, Am), GetDistDrag_Rec.
+    """
+    drag, mass = coefficients.axial
+    mass *= 0.0 if member.potential else 1.0 if member.shape == "circ" else BOX_SIDES
+    return EndCoefficients(0.5 * float(drag), float(mass), None)
 
 
 def _across(member: HydroDynMember, coefficients: MemberCoefficients, notes: MemberNotes) -> dict[str, float]:
@@ -139,22 +173,46 @@ def _place(
     hull: ConvertedHull,
     notes: MemberNotes,
 ) -> None:
-    """Add a member, in two halves where its ends have different coefficients."""
+    """Add a member, in parts where their axial coefficients differ."""
     across = _across(member, coefficients, notes)
     if not is_column(member):
         _add(hull, member, coefficients, f"member{member.number}", hull.group("pontoon", across), (0.0, 1.0))
         return
     mine = [ends.get((member.number, end)) for end in (0, 1)]
-    stated = [axial for axial in mine if axial is not None]
-    if len(stated) == 2 and stated[0] != stated[1]:
-        text = "Its ends have different axial coefficients: it is cut into halves at its middle."
-        notes.add(member.number, "JointAxID", Treatment.TAKEN, text)
-        for name, axial, span in (("lower", stated[0], (0.0, 0.5)), ("upper", stated[1], (0.5, 1.0))):
-            group = hull.group("column", _with_ends(across, axial))
-            _add(hull, member, coefficients, f"member{member.number}_{name}", group, span)
-        return
-    group = hull.group("column", _with_ends(across, stated[0] if stated else EndCoefficients(0.0, 0.0, None)))
-    _add(hull, member, coefficients, f"member{member.number}", group, (0.0, 1.0))
+    for name, axial, span in _spans(member, coefficients, mine, notes):
+        group = hull.group("column", _with_ends(across, axial))
+        _add(hull, member, coefficients, f"member{member.number}{name}", group, span)
+
+
+def _spans(
+    member: HydroDynMember, coefficients: MemberCoefficients, ends: Sequence[EndCoefficients | None], notes: MemberNotes
+) -> list[tuple[str, EndCoefficients, tuple[float, float]]]:
+    """Parts of a steep member by axial coefficients: ending of the name, coefficients, fractions of the length."""
+    stated = [axial for axial in ends if axial is not None]
+    if not tapers(member):
+        if len(stated) == 2 and stated[0] != stated[1]:
+            text = "Its ends have different axial coefficients: it is cut into halves at its middle."
+            notes.add(member.number, "JointAxID", Treatment.TAKEN, text)
+            return [("_lower", stated[0], (0.0, 0.5)), ("_upper", stated[1], (0.5, 1.0))]
+        return [("", stated[0] if stated else EndCoefficients(0.0, 0.0, None), (0.0, 1.0))]
+    along = _along_taper(member, coefficients)
+    lower, upper = (axial if axial is not None and not _alike(axial, along) else None for axial in ends)
+    if lower is None and upper is None:
+        return [("", along, (0.0, 1.0))]
+    joints = [joint.position for joint in member.joints]
+    slice_ = min(
+        MAX_SLICE, max(SLICE, SLICE_OF_SIZE * float(member.sizes.max()) / float(np.linalg.norm(joints[1] - joints[0])))
+    )
+    text = f"Ends with other axial coefficients than the tapered sides have a slice of {100 * slice_:.2g} % of the length."
+    notes.add(member.number, "JointAxID", Treatment.APPROXIMATED, text)
+    low, high = 0.0 if lower is None else slice_, 1.0 if upper is None else 1.0 - slice_
+    parts = [("_lower", lower, (0.0, low)), ("", along, (low, high)), ("_upper", upper, (high, 1.0))]
+    return [(name, axial, span) for name, axial, span in parts if axial is not None]
+
+
+def _alike(one: EndCoefficients, other: EndCoefficients) -> bool:
+    """Whether coefficients are the same but for rounding."""
+    return one.law == other.law and np.allclose([one.drag, one.mass], [other.drag, other.mass], rtol=_SAME, atol=0.0)
 
 
 def _with_ends(across: dict[str, float], end: EndCoefficients) -> dict[str, Any]:
