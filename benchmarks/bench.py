@@ -1,10 +1,11 @@
 """Speed as ratios in one run: against plain NumPy, finite differences and population searches.
 
-    python -m benchmarks.bench [--quick] [--only decay|sea|batch|sweep|fit] [--budget SECONDS] [--searches DE ...] [--out FILE]
+    python -m benchmarks.bench [--quick] [--only PART] [--budget SECONDS] [--searches DE ...] [--out FILE]
 
 writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core,
 contestants in turns, medians; so the machine may be busy. On a GPU, which `--only batch` is for, what it does is wall time.
-`--quick` is a smoke run, `--only` a part; these write only where `--out` says.
+`--quick` is a smoke run, `--only` a part (decay, sea, mooring, derivatives, batch, sweep, fit); these write only where
+`--out` says.
 """
 
 import argparse
@@ -28,7 +29,7 @@ from jaxhydro.sweep import worker
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.md"
 HEADINGS = ("what", "result", "goal", "prototype")
-PARTS = ("decay", "sea", "derivatives", "batch", "sweep", "fit")
+PARTS = ("decay", "sea", "mooring", "derivatives", "batch", "sweep", "fit")
 SLOW = "sweep"  # is not in a smoke run
 SEARCHES = ["DE", "GA", "CMA-ES"]
 PACKAGES = ("jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix", "pymoo")

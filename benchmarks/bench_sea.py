@@ -13,7 +13,7 @@ from ruamel.yaml import YAML
 from benchmarks.bench_timing import Row, contest, times
 from benchmarks.reference_model import matrix_of, state_of
 from benchmarks.reference_waves import WaveModel, Waves, march
-from jaxhydro import IrregularSea, State, build, equilibrium, jonswap, load_platform, spectrum_components
+from jaxhydro import IrregularSea, Platform, State, build, equilibrium, jonswap, load_platform, spectrum_components
 from jaxhydro.dynamics.integrate import clock, integrate
 from jaxhydro.platform.convergence import with_elements
 from jaxhydro.waves import Components
@@ -28,10 +28,13 @@ DIRECTIONS = 100  # of derivatives at once
 
 
 class Hour:
-    """A sea of `duration` s and the platform in it, as case 4 of the paper: second order, stretching, MacCamy and Fuchs."""
+    """A sea of `duration` s and the platform in it, as case 4 of the paper: second order, stretching, MacCamy and Fuchs.
 
-    def __init__(self, duration: float) -> None:
-        self.platform = with_elements(load_platform(PLATFORM), "pontoon", ELEMENTS)
+    `platform` replaces that of the paper.
+    """
+
+    def __init__(self, duration: float, platform: Platform | None = None) -> None:
+        self.platform = with_elements(load_platform(PLATFORM), "pontoon", ELEMENTS) if platform is None else platform
         self.model = build(self.platform)
         self.duration, self.steps = duration, round(duration / STEP)
         self.components: Components = spectrum_components(

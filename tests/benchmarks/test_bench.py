@@ -22,6 +22,7 @@ KEYS = (
     "Of a step: the waves at strips and ends",
     "Of a step: the scheme, and keeping the path",
     "A step over that floor",
+    "Sea with three catenaries over springs",
     "2 seas at once, float64, simulated time over CPU time",
     "2 seas at once, float32, simulated time over CPU time",
     "Calibration by least squares",
