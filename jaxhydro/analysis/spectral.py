@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxhydro.analysis.windows import window_weights
-from jaxhydro.waves.recorded_waves import sampling_interval
+from jaxhydro.waves.record_harmonics import sampling_interval
 
 SEGMENT = 1000.0  # s: 0.001 Hz between frequencies, so that the lowest band, 0.005 to 0.025 Hz, has twenty of them
 

@@ -85,6 +85,14 @@ Gauge = Annotated[
     tuple[float, float] | None,
     _option("--wave-position", RECORD, "Where it was measured, m from the reference position.", "0 0", metavar="X Y"),
 ]
+SecondColumn = Annotated[
+    str | None,
+    _option("--second-wave-column", RECORD, "Column of a second gauge, in line with the first: tells reflected waves.", "none"),
+]
+SecondGauge = Annotated[
+    tuple[float, float] | None,
+    _option("--second-wave-position", RECORD, "Where the second gauge was, m.", "none", metavar="X Y"),
+]
 Low = Annotated[
     float | None,
     _option("--low", HOW, "Lowest first-order frequency, Hz; found from the sea if it is outside 0.03 to 0.3 Hz.", f"{LOW:g}"),
@@ -100,7 +108,7 @@ Order = Annotated[
         HOW,
         "2: with the waves that they bind (Sharma and Dean; in regular waves Stokes). In regular waves 3 or more: stream "
         "function of so many Fourier components.",
-        f"{ORDER}; 1 in a sea of several headings and in regular waves",
+        f"{ORDER}; 1 in a sea of several headings, with two gauges and in regular waves",
         min=1,
         max=MAX_ORDER,
     ),

@@ -31,6 +31,8 @@ EXAMPLES = "\n\n".join(
         "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --spreading 10 --out short-crested",
         "jaxhydro simulate volturnus-s --sea 'hs=2 tp=14 heading=30' --sea 'hs=1.5 tp=7 heading=-40 spreading=8' --out two",
         "jaxhydro simulate volturnus-s --wave tank.csv --wave-column probe1 --wave-position -100 0 --out tank",
+        "jaxhydro simulate volturnus-s --wave tank.csv --wave-column probe1 --wave-position -100 0 --second-wave-column probe2 "
+        "--second-wave-position -80 0 --out both",
         "jaxhydro simulate volturnus-s --wave-height 4 --wave-period 10 --out wave",
         "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
         "jaxhydro simulate volturnus-s --release surge=5 --format netcdf --format outb --out files",

@@ -49,6 +49,8 @@ def simulate(
     wave_unit: arguments.WaveUnit = None,
     wave_time_column: arguments.TimeColumn = None,
     wave_position: arguments.Gauge = None,
+    second_wave_column: arguments.SecondColumn = None,
+    second_wave_position: arguments.SecondGauge = None,
     low: arguments.Low = None,
     cutoff: arguments.Cutoff = None,
     order: arguments.Order = None,
@@ -94,16 +96,14 @@ def simulate(
     dt = options.interval(dt, "--dt", duration)
     step = None if step is None else options.interval(step, "--step", duration)
     out = options.results_folder(out, "motion.csv", platform)
-    from jaxhydro.cli import sea_command
-    from jaxhydro.cli import simulate_command as command
+    from jaxhydro.cli import sea_command, simulate_command
 
     sea_heading = None if asked is None else asked.heading if asked.long_crested else None  # several are checked with the sea
     model = _model(platform, calibration, diffraction, elements, heading if regular is not None else sea_heading)
-    job = command.Job(platform, out, duration, dt, offset, step, figures, None if calibration is None else str(calibration))
-    job = job._replace(formats=tuple(motion_format.value for motion_format in formats or ()))
-    stretch = sea_options.stretching(cli_options)
-    of_regular = (regular, heading, stretch, order or 1)
-    if not (command.run(model, job, *of_regular) if asked is None else sea_command.run(model, job, asked)):
+    values, written = None if calibration is None else str(calibration), tuple(format.value for format in formats or ())
+    job = simulate_command.Job(platform, out, duration, dt, offset, step, figures, values, written)
+    of_regular = (regular, heading, sea_options.stretching(cli_options), order or 1)
+    if not (simulate_command.run(model, job, *of_regular) if asked is None else sea_command.run(model, job, asked)):
         raise typer.Exit(NOT_CONVERGED)
 
 

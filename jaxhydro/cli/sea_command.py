@@ -18,7 +18,8 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.natural_modes import Modes
 from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, TRANSIENT, TRANSIENT_SHARE, RequestedSea
 from jaxhydro.dynamics.rest_remarks import wave_remarks
-from jaxhydro.dynamics.sea_of_request import build_sea, impossible, outside
+from jaxhydro.dynamics.sea_of_record import impossible
+from jaxhydro.dynamics.sea_of_request import build_sea, outside
 from jaxhydro.dynamics.simulate import free_decay
 from jaxhydro.dynamics.time_steps import largest_step
 from jaxhydro.errors import InputError, Problem
@@ -144,6 +145,10 @@ UNITS = {
     "transient": "s",
     "step_at_most": "s",
     "wave_position": "m",
+    "second_wave_position": "m",
+    "incident_significant_wave_height": "m",
+    "reflected_significant_wave_height": "m",
+    "separated_band": "Hz",
 }
 
 
@@ -151,10 +156,10 @@ def _about(about: dict[str, Any]) -> list[tuple[str, str]]:
     rows = []
     for name, value in about.items():
         shown = f"{value:.4g}" if isinstance(value, float) else str(value)
-        if name in ("share_of_record", "mismatch") or name.startswith("share_outside"):
+        if name == "mismatch" or name.startswith("share_"):
             shown = f"{value:.2%}"
         if isinstance(value, list):
-            shown = ", ".join(x if isinstance(x, str) else f"{x:g}" for x in value)
+            shown = ", ".join(x if isinstance(x, str) else f"{x:.4g}" for x in value)
         if value is not None:
             rows.append((name.replace("_", " ").capitalize(), f"{shown} {UNITS.get(name, '')}".strip()))
     return rows

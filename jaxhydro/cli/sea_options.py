@@ -9,10 +9,10 @@ import numpy as np
 
 from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.cli.options import finite, positive, wrong
-from jaxhydro.dynamics.requested_sea import Record, RequestedSea, usual_transient
+from jaxhydro.dynamics.requested_sea import Record, RequestedSea, SecondGauge, usual_transient
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.units import SI
-from jaxhydro.waves.recorded_waves import sampling_interval
+from jaxhydro.waves.record_harmonics import sampling_interval
 
 ORDER, SEED = 2, 0
 MAX_ORDER = 30  # Fourier components of a regular wave
@@ -20,7 +20,8 @@ DEFAULTS = {"--heading": 0.0, "--dt": 0.1}
 OF_SPECTRUM = ("--hs", "--tp", "--gamma", "--spectrum", "--seed", "--amplitudes")
 OF_DIRECTIONS = ("--sea", "--sea-file", "--sea-time", "--x-bearing", "--spreading")
 OF_SEA = (*OF_SPECTRUM, *OF_DIRECTIONS, "--low", "--cutoff", "--order", "--transient")
-OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
+OF_SECOND_GAUGE = ("--second-wave-column", "--second-wave-position")
+OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position", *OF_SECOND_GAUGE)
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
 UNITS = SI["length"]  # of a wave record
 MAX_DURATION = 5e5  # s: six days, as many samples as fit into memory at the usual --dt
@@ -115,6 +116,10 @@ def asked(options: Mapping[str, Any], heading: float) -> RequestedSea | None:
             expected = "a significant wave height expected with it" if of_spectrum else "a sea expected with it"
             raise wrong(next(iter(named)), f"{expected}: --hs 3.1 --tp 8.96" + ("" if of_spectrum else ", or --wave FILE"))
         return None
+    second = [name for name in OF_SECOND_GAUGE if name in options]
+    if len(second) == 1:
+        absent = next(name for name in OF_SECOND_GAUGE if name not in options)
+        raise wrong(absent, f"expected with {second[0]}: a second gauge has a column and a position")
     order_of_sea(options)
     kind = str(named.get("--spectrum", "jonswap"))
     hs, tp, gamma = (named.get(name) for name in ("--hs", "--tp", "--gamma"))
@@ -133,7 +138,7 @@ def asked(options: Mapping[str, Any], heading: float) -> RequestedSea | None:
         from jaxhydro.cli import directional_options
 
         return directional_options.asked(options, heading, how)
-    return RequestedSea(hs, tp, gamma, kind, order=named.get("--order", ORDER), heading=heading, **how)
+    return RequestedSea(hs, tp, gamma, kind, order=named.get("--order", 1 if second else ORDER), heading=heading, **how)
 
 
 def duration(requested: float | None, sea: RequestedSea | None) -> float:
@@ -188,28 +193,38 @@ def with_record(sea: RequestedSea, file: Path, table: Any, options: Mapping[str,
         return name, values
 
     time_name, times = pick("--wave-time-column", TIME_COLUMN)
-    name, elevation = pick("--wave-column", WAVE_COLUMN)
     try:
-        sampling_interval(times)
+        step = sampling_interval(times)
     except ValueError as error:
         hint = "Interpolate to even times, or make it a campaign, which takes such records."
         raise wrong_file(f"column {time_name}", "even sampling", f"none ({error})", hint) from None
     stated = table.attrs.get("stated", {})
+    if stated.get(time_name, "s") != "s":
+        raise wrong_file(f"column {time_name}", "times in s", f"{stated[time_name]}, as the file states")
     unit = str(options.get("--wave-unit", "m"))
     if unit not in UNITS:
         raise wrong("--wave-unit", f"one of {', '.join(UNITS)} expected, found {unit}")
-    if name in stated and stated[name] != unit:
-        found = f"{stated[name]}, as the file states"
-        raise wrong_file(f"column {name}", f"a unit of {unit}", found, "--wave-unit says which.")
-    if stated.get(time_name, "s") != "s":
-        raise wrong_file(f"column {time_name}", "times in s", f"{stated[time_name]}, as the file states")
-    elevation = elevation * UNITS[unit]
-    height = 4 * float(np.std(elevation))
-    # of waves in deep water: no other makes them longer
-    length = 9.80665 / (2 * np.pi) * record_peak_period(elevation, float(times[-1] - times[0]) / (len(times) - 1)) ** 2
-    if height > MAX_STEEPNESS * length:
-        found = f"waves {height:.3g} m high and {length:.3g} m long"
-        expected = "waves less than 1/7 as high as long, at full scale"
-        raise wrong_file(f"column {name}", expected, found, "--wave-unit: mm or cm?")
-    x, y = (finite(float(value), "--wave-position") for value in options.get("--wave-position", (0.0, 0.0)))
-    return replace(sea, record=Record(str(file), name, times, elevation, (x, y)))
+
+    def gauge(column_option: str, position_option: str) -> tuple[str, np.ndarray, tuple[float, float]]:
+        name, elevation = pick(column_option, WAVE_COLUMN)
+        if name in stated and stated[name] != unit:
+            found = f"{stated[name]}, as the file states"
+            raise wrong_file(f"column {name}", f"a unit of {unit}", found, "--wave-unit says which.")
+        elevation = elevation * UNITS[unit]
+        height = 4 * float(np.std(elevation))
+        # of waves in deep water: no other makes them longer
+        length = 9.80665 / (2 * np.pi) * record_peak_period(elevation, step) ** 2
+        if height > MAX_STEEPNESS * length:
+            found = f"waves {height:.3g} m high and {length:.3g} m long"
+            expected = "waves less than 1/7 as high as long, at full scale"
+            raise wrong_file(f"column {name}", expected, found, "--wave-unit: mm or cm?")
+        x, y = (finite(float(value), position_option) for value in options.get(position_option, (0.0, 0.0)))
+        return name, elevation, (x, y)
+
+    first = gauge("--wave-column", "--wave-position")
+    if "--second-wave-column" not in options:
+        return replace(sea, record=Record(str(file), first[0], times, *first[1:]))
+    second = SecondGauge(*gauge(*OF_SECOND_GAUGE))
+    if second.column == first[0]:
+        raise wrong("--second-wave-column", f"another column than that of --wave-column expected, found {second.column}")
+    return replace(sea, record=Record(str(file), first[0], times, *first[1:], second))

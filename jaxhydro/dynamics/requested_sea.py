@@ -25,6 +25,21 @@ def usual_transient(duration: float, pace: float = 1.0) -> float:
 
 
 @dataclass(frozen=True)
+class SecondGauge:
+    """Elevation that a second gauge measured at the same times.
+
+    Attributes:
+        column: Column of the file.
+        elevation: Elevation (m), (t,).
+        position: Position of the gauge (m, earth axes).
+    """
+
+    column: str
+    elevation: np.ndarray
+    position: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class Record:
     """Measured wave elevation.
 
@@ -34,6 +49,7 @@ class Record:
         times: Times (s), (t,), even.
         elevation: Elevation (m), (t,).
         position: Position of the gauge (m, earth axes).
+        second: A second gauge, by which reflected waves are told from incident ones, or None.
     """
 
     source: str
@@ -41,6 +57,7 @@ class Record:
     times: np.ndarray
     elevation: np.ndarray
     position: tuple[float, float]
+    second: SecondGauge | None = None
 
 
 @dataclass(frozen=True)
@@ -131,6 +148,8 @@ class RequestedSea:
     @property
     def long_crested(self) -> bool:
         """Whether all waves of the sea travel one way."""
+        if self.record is not None and self.record.second is not None:
+            return False
         return self.directional is None or self.directional.long_crested
 
     def band(self, pace: float) -> tuple[float, float]:

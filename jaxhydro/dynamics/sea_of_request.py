@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.irregular_simulation import MAX_PAIRS, too_many_pairs
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import Record, RequestedSea
+from jaxhydro.dynamics.requested_sea import RequestedSea
+from jaxhydro.dynamics.sea_of_record import NOTED_SHARE, add_shares, from_record, impossible
 from jaxhydro.dynamics.table_ranges import heading_fault, outside_tables
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.quick_jit import on_device
@@ -21,13 +21,10 @@ from jaxhydro.waves.directional_spectrum import (
 )
 from jaxhydro.waves.irregular import spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea
-from jaxhydro.waves.recorded_waves import separated_record
 from jaxhydro.waves.spectra import SPECTRA, peak_enhancement, white_noise
 from jaxhydro.waves.spreading import circular_moments
-from jaxhydro.waves.wave_errors import BandError, BreakingError
+from jaxhydro.waves.wave_errors import BreakingError
 
-MAX_RECORD_MISMATCH = 0.01  # of a record in the band, that first and second order may miss by root mean square
-NOTED_SHARE = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
 MIN_SHARE = 0.05  # share, below which it is a mistake
 
 
@@ -75,7 +72,7 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
     notes: list[str] = []
     low, cutoff = asked.band(float(model.pace))
     if asked.record is not None:
-        waves, about = _from_record(model, asked, asked.record, notes)
+        waves, about = from_record(model, asked, asked.record, notes)
         target = None
     else:
         waves, about, target = _from_spectrum(model, asked, duration, notes)
@@ -103,11 +100,7 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
         _check_directional(model, asked, waves)
     sea = IrregularSea(waves, model.environment, 1 if asked.order == 1 else 2, asked.stretching)  # type: ignore[arg-type]
     if asked.record is not None:
-        record = asked.record
-        residual = record.elevation - record.elevation.mean() - sea.gauge(record.times, record.position)
-        about["share_of_record"] = 1 - float(np.var(residual) / np.var(record.elevation))
-        if about["share_of_record"] < NOTED_SHARE:
-            notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
+        add_shares(sea, asked.record, about, notes)
     return BuiltSea(sea, about, target, notes)
 
 
@@ -195,39 +188,3 @@ def _from_spectrum(
     elif len(asked.systems) > 1 or not asked.long_crested:
         about["systems"] = "; ".join(system.words for system in asked.systems)
     return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))
-
-
-def _from_record(model: Model, asked: RequestedSea, record: Record, notes: list[str]) -> tuple[Components, dict[str, Any]]:
-    low, cutoff = asked.band(float(model.pace))
-    try:
-        separation = separated_record(
-            record.times,
-            record.elevation,
-            model.environment,
-            position=record.position,
-            heading=math.radians(asked.heading),
-            low=low,
-            cutoff=cutoff,
-            order=asked.order,
-        )
-    except ValueError as error:
-        option = "--cutoff" if isinstance(error, BandError) else f"{record.source}: column {record.column}"
-        raise impossible(option, error) from None
-    if separation.mismatch > MAX_RECORD_MISMATCH:
-        missed = (
-            f"first and second order miss {separation.mismatch:.1%} of the record in the band, and the nearest found is used"
-        )
-        notes.append(f"{missed}: a --cutoff below {cutoff:g}, or --order 1, follows it")
-    step = float(record.times[-1] - record.times[0]) / (len(record.times) - 1)
-    return separation.waves, {
-        "record": record.source,
-        "record_column": record.column,
-        "wave_position": list(record.position),
-        "significant_wave_height": 4 * float(np.std(record.elevation)),
-        "peak_period": record_peak_period(record.elevation, step, low, cutoff),
-        "mismatch": separation.mismatch,
-    }
-
-
-def impossible(option: str, error: ValueError) -> InputError:
-    return InputError(option, [Problem("", "a sea that can be simulated", f"none ({error})")])

@@ -14,6 +14,7 @@ from jaxhydro.waves.sea import AbstractSea, StillWater, Stretching
 from jaxhydro.waves.second_order import bound_waves
 from jaxhydro.waves.spectra import jonswap, pierson_moskowitz, tabulated, white_noise
 from jaxhydro.waves.support_sea import SupportSea
+from jaxhydro.waves.two_gauges import incident_and_reflected
 from jaxhydro.waves.wave_sea import WaveSea
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "bound_waves",
     "components",
     "elevation_spectrum",
+    "incident_and_reflected",
     "jonswap",
     "maccamy_fuchs",
     "pierson_moskowitz",

@@ -16,7 +16,8 @@ class Components(eqx.Module):
     """First-order wave components: eta = sum a cos(omega t - k (x cos heading + y sin heading) + phase).
 
     `first` is set where the frequencies are successive harmonics of a period, omega = (first, first + 1 ...) 2 pi / period,
-    zero amplitudes included. Fourier transforms and sums over pairs need that. None: any frequencies.
+    zero amplitudes included. Fourier transforms and sums over pairs need that. None: any frequencies. With `trains` 2 the same
+    harmonics follow once more, as for incident and reflected waves.
 
     Attributes:
         amplitude: Amplitudes (m), (w,).
@@ -25,6 +26,7 @@ class Components(eqx.Module):
         heading: Directions that the waves travel to (rad), from x towards y, (w,).
         phase: Phases (rad), (w,).
         first: Number of the first harmonic, or None.
+        trains: Number of wave trains, each with the same harmonics, one after the other.
     """
 
     amplitude: Float[Array, " w"]  # m
@@ -33,6 +35,7 @@ class Components(eqx.Module):
     heading: Float[Array, " w"]  # rad, where the waves travel to, from x towards y
     phase: Float[Array, " w"]  # rad
     first: int | None = eqx.field(static=True, default=None)
+    trains: int = eqx.field(static=True, default=1)
 
     def __repr__(self) -> str:
         """Number, frequencies, height and headings; shapes where the numbers are not computed yet."""
@@ -50,7 +53,7 @@ class Components(eqx.Module):
         """
         if self.first is None:
             raise ValueError("the components are no successive harmonics of a period")
-        return self.first, self.first + self.omega.size - 1
+        return self.first, self.first + self.omega.size // self.trains - 1
 
     @property
     def period(self) -> Float[Array, ""]:

@@ -140,7 +140,7 @@ class IrregularSea(AbstractSea):
         spectrum = np.zeros(2 * last + 1, complex)
         if order != 2:
             at_gauge = _at_gauge(dataclasses.replace(waves, first=None), as_data(position))
-            spectrum[first : last + 1] = np.asarray(at_gauge)
+            spectrum[first : last + 1] = np.asarray(at_gauge).reshape(waves.trains, -1).sum(axis=0)
         if order != 1 and self.order == 2:
             spectrum += np.asarray(self.bound_elevation(position))
         elevation = _harmonic_sum(2 * math.pi / float(waves.period) * times, spectrum)

@@ -3,6 +3,7 @@
 Components are successive harmonics of a period: pairs of one sum or difference fall on one harmonic.
 """
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -15,7 +16,7 @@ from jaxtyping import Array, Complex, Float, Int, PyTree
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components
-from jaxhydro.waves.second_order import KINDS, Kind, below_highest, transfer_of_sign
+from jaxhydro.waves.second_order import KINDS, Kind, below_highest, bound_waves, transfer_of_sign
 
 Reduce = Callable[[Float[Array, " n"], Float[Array, "2 n"], Complex[Array, " n"], Complex[Array, " n"]], PyTree]
 """From the four fields of `PlaneWaves` of some pairs to sums over them, linear in the last two."""
@@ -86,8 +87,10 @@ def sum_over_pairs(
         The pytree of `reduce`, with a leading axis over b.
 
     Raises:
-        ValueError: The components are not successive harmonics of a period.
+        ValueError: The components are not successive harmonics of a period, or are several wave trains.
     """
+    if waves.trains > 1:
+        raise ValueError(f"components of one wave train expected, found {waves.trains}: see `bound_waves`")
     n, (first, last) = waves.omega.size, waves.harmonics
     width = min(n, TILE)
     amplitude, index = waves.complex_amplitude(), jnp.arange(n, dtype=float)
@@ -146,7 +149,12 @@ def elevation_spectrum(
         ValueError: The components are not successive harmonics of a period.
     """
     phase = waves.phase - jnp.asarray(position, float) @ waves.vector()  # phases move with the components: nothing per pair
-    moved = Components(waves.amplitude, waves.omega, waves.wavenumber, waves.heading, phase, waves.first)
+    moved = dataclasses.replace(waves, phase=phase)
+    if waves.trains > 1:  # few components: all pairs are summed
+        last = waves.harmonics[1]
+        bound = bound_waves(moved, environment, kinds, highest_difference=highest_difference)
+        harmonic = jnp.rint(bound.omega / waves.omega[0] * waves.harmonics[0]).astype(int)
+        return jnp.zeros(2 * last + 1, complex).at[harmonic].add(bound.elevation)
 
     def reduce(*pairs: Any) -> Complex[Array, ""]:
         return pairs[2].sum()

@@ -4,30 +4,27 @@ They are separated once per record, in NumPy; the results go into jitted code.
 """
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 
 from jaxhydro.choices import check
 from jaxhydro.environment import Environment
 from jaxhydro.exported_programs import exported_jit
 from jaxhydro.waves.components import Components
-from jaxhydro.waves.continuation import continued
 from jaxhydro.waves.dispersion import wavenumber
-from jaxhydro.waves.irregular import fourier_length, harmonic_components, harmonics
+from jaxhydro.waves.irregular import harmonic_components
 from jaxhydro.waves.pair_sums import elevation_spectrum
+from jaxhydro.waves.record_harmonics import measured_harmonics
 from jaxhydro.waves.second_order import KINDS, Kind
-from jaxhydro.waves.wave_errors import BandError
 
-MAX_JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does
 TOLERANCE = 1e-4  # of the record in the band, by root mean square, that first and second order together may miss
-MIN_CONTINUATION = 20.0  # of the shortest waves: how far records are continued at least
-MAX_LENGTHENING = 1.5  # times a record, that it may have when continued
 MAX_ROUNDS = 30  # of the iteration for the first-order part; 4 to 8 are usual, more in steep seas
 
-_second_order = exported_jit(elevation_spectrum)  # once per band and record length, not once per round
+second_order_elevation = exported_jit(elevation_spectrum)  # once per band and record length, not once per round
 
 
 class Separation(NamedTuple):
@@ -145,31 +142,10 @@ def separated_record(
     Raises:
         ValueError: The times are uneven, the record has gaps or no waves in the band, or the band is out of range.
     """
-    times, elevation = np.asarray(times, float), np.asarray(elevation, float)
-    step = sampling_interval(times)
-    if elevation.shape != times.shape:
-        raise ValueError(f"an elevation for each of {len(times)} times expected, found shape {elevation.shape}")
-    if not np.all(np.isfinite(elevation)):
-        raise ValueError(f"elevations are numbers, found {np.sum(~np.isfinite(elevation))} of {len(elevation)} that are not")
     check(order=(order, (1, 2)))
     for kind in kinds:
         check(kinds=(kind, KINDS))
-    if cutoff > 0.5 / step:
-        raise BandError(f"cutoff is at most half the sampling rate, {0.5 / step:g} Hz, found {cutoff:g} Hz")
-    level = elevation - elevation.mean()
-    if cutoff > 0:
-        length = fourier_length(len(times) + MIN_CONTINUATION / (cutoff * step))
-        if length <= MAX_LENGTHENING * len(times):
-            level = continued(level, step, low, cutoff, length)
-    count = len(level)
-    period = count * step
-    first, last = harmonics(low, cutoff, period)
-    last = min(last, (count - 1) // 2)  # at half the sampling rate a phase is not seen
-    band = slice(first, last + 1)
-    omega = 2 * math.pi / period * np.arange(first, last + 1)
-    measured = 2 / count * np.fft.rfft(level)[band] * np.exp(-1j * omega * times[0])
-    if not measured.any():
-        raise ValueError(f"the record has no waves from {low:g} to {cutoff:g} Hz")
+    (measured,), omega, first = measured_harmonics(times, [elevation], low, cutoff)
     k = np.asarray(wavenumber(jnp.asarray(omega), jnp.asarray(environment.depth), jnp.asarray(environment.gravity)))
     to_origin = np.exp(1j * k * (position[0] * math.cos(heading) + position[1] * math.sin(heading)))
 
@@ -179,37 +155,38 @@ def separated_record(
 
     if order == 1:
         return Separation(waves(measured), 0.0, 0)
+    band = slice(first, first + omega.size)
+
+    def bound(at_gauge: np.ndarray) -> np.ndarray:
+        return np.asarray(second_order_elevation(waves(at_gauge), environment, position, kinds, highest_difference))[band]
+
+    best, mismatch, rounds = first_order_part(measured, bound, tolerance)
+    return Separation(waves(best), mismatch, rounds)
+
+
+def first_order_part(
+    measured: Complex[np.ndarray, "*g w"], bound: Callable[[np.ndarray], np.ndarray], tolerance: float
+) -> tuple[Complex[np.ndarray, "*g w"], float, int]:
+    """First-order part of measured amplitudes, eta1 = eta - eta2(eta1), by iteration.
+
+    Args:
+        measured: Complex amplitudes (m) at one gauge or several.
+        bound: From first-order amplitudes at the gauges to the second-order amplitudes there (m).
+        tolerance: Mismatch (-) that the iteration should reach.
+
+    Returns:
+        First-order amplitudes (m), mismatch (-) and number of iterations.
+    """
     size = np.linalg.norm(measured)
     best, trial, share, rounds = measured, measured, 1.0, 0
     residual, least = measured, np.inf  # what the best trial misses, and its norm over the record's
     while rounds < MAX_ROUNDS and least > 0.1 * tolerance and share > 1e-3:
         rounds += 1
-        second = np.asarray(_second_order(waves(trial), environment, position, kinds, highest_difference))[band]
-        missed = measured - trial - second
+        missed = measured - trial - bound(trial)
         mismatch = float(np.linalg.norm(missed) / size)
         if mismatch < least:
             best, residual, least = trial, missed, mismatch
         else:
             share *= 0.5  # gone too far: a shorter step from the best
         trial = best + share * residual
-    return Separation(waves(best), least, rounds)
-
-
-def sampling_interval(times: Float[np.ndarray, " t"]) -> float:
-    """Sampling interval (s) of even, ascending times.
-
-    Args:
-        times: Times (s), (t,), four or more.
-
-    Raises:
-        ValueError: Times are uneven by more than 1 % of a step.
-    """
-    times = np.asarray(times, float)
-    if times.ndim != 1 or len(times) < 4 or not np.all(np.isfinite(times)):
-        raise ValueError(f"four or more times (s) expected, found an array of shape {times.shape} or with gaps")
-    step = (times[-1] - times[0]) / (len(times) - 1)
-    worst = int(np.argmax(np.abs(times - times[0] - step * np.arange(len(times)))))
-    off = abs(times[worst] - times[0] - step * worst)
-    if not (step > 0 and off <= MAX_JITTER * step):
-        raise ValueError(f"evenly sampled times expected, found {times[worst]:g} s {off:g} s off an even step of {step:g} s")
-    return float(step)
+    return best, least, rounds

@@ -19,3 +19,16 @@ class StretchingError(ValueError):
 
 class NoWaveError(ValueError):
     """No wave of the requested height and period is found."""
+
+
+class GaugeSpacingError(ValueError):
+    """Two wave gauges are too close or too far apart to tell incident from reflected waves.
+
+    Attributes:
+        expected: Positions that are expected.
+        found: Positions that are found.
+    """
+
+    def __init__(self, expected: str, found: str) -> None:
+        super().__init__(f"{expected} expected, found {found}")
+        self.expected, self.found = expected, found

@@ -19,7 +19,8 @@ from jaxhydro.waves.components import Components
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.irregular import repeat_period, spectrum_components
 from jaxhydro.waves.pair_sums import elevation_spectrum
-from jaxhydro.waves.recorded_waves import record_components, sampling_interval, separated_record
+from jaxhydro.waves.record_harmonics import sampling_interval
+from jaxhydro.waves.recorded_waves import record_components, separated_record
 from jaxhydro.waves.spectral_moments import moments
 from jaxhydro.waves.spreading import spreading
 

@@ -56,6 +56,7 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
 }
 NUMERICS = ("waves", "hull", "loads", "water", "sensors", "integrators", "dynamics")
 NOT_PURE = {
+    "jaxhydro.dynamics.sea_of_record",  # tells what is wrong with a record
     "jaxhydro.dynamics.sea_of_request",  # tells what is wrong with a sea that was asked for
     "jaxhydro.waves.stream_function",  # asks raschii for coefficients
 }
