@@ -16,7 +16,17 @@ from typing import Annotated, Any
 from pydantic import Field, PlainValidator, model_validator
 
 from calibration.campaign.manifest_checks import channel_problems, other_problems, test_problems
-from calibration.campaign.manifest_sections import WAVE, Calibrate, Channel, Name, Recording, Test, WaveChannel, Zero
+from calibration.campaign.manifest_sections import (
+    SECOND_WAVE,
+    WAVE,
+    Calibrate,
+    Channel,
+    Name,
+    Recording,
+    Test,
+    WaveChannel,
+    Zero,
+)
 from calibration.campaign.stated_sizes import check_stated_size
 from jaxhydro.errors import Faults, InputError, Problem, suggest
 from jaxhydro.files import campaign_file
@@ -34,6 +44,7 @@ class Manifest(Schema):
     density_ratio: Annotated[Positive, Field(le=100)] = 1.0
     channels: dict[str, Channel]
     wave_channel: WaveChannel | None = None
+    second_wave_channel: WaveChannel | None = None  # in line with the waves: tells incident from reflected ones
     wave_band: tuple[Positive, Positive] | None = None  # Hz on the files' time axis
     noise: dict[str, Positive] = Field(default_factory=dict)
     zero: Zero | None = None
@@ -52,8 +63,9 @@ class Manifest(Schema):
 
     @property
     def all_channels(self) -> dict[str, Channel]:
-        """The channels as declared for all tests, `time` and, where there is one, `wave` among them."""
-        return {**self.channels, **({} if self.wave_channel is None else {WAVE: self.wave_channel})}
+        """The channels as declared for all tests, `time` and, where they are, `wave` and `second_wave` among them."""
+        gauges = {WAVE: self.wave_channel, SECOND_WAVE: self.second_wave_channel}
+        return {**self.channels, **{name: gauge for name, gauge in gauges.items() if gauge is not None}}
 
     def channels_of(self, test: Test) -> dict[str, Channel]:
         """`all_channels` with the test's overrides applied."""
@@ -74,9 +86,10 @@ class Manifest(Schema):
                 for name, entry in entries.items()
             }
 
-        wave = None if self.wave_channel is None else reverse({WAVE: self.wave_channel})[WAVE]
+        gauges = reverse({WAVE: self.wave_channel, SECOND_WAVE: self.second_wave_channel})
+        waves = {"wave_channel": gauges[WAVE], "second_wave_channel": gauges[SECOND_WAVE]}
         tests = tuple(test.model_copy(update={"channels": reverse(test.channels)}) for test in self.tests)
-        return self.model_copy(update={"channels": reverse(self.channels), "wave_channel": wave, "tests": tests})
+        return self.model_copy(update={"channels": reverse(self.channels), "tests": tests, **waves})
 
 
 def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from calibration.campaign.manifest_sections import CHANNELS, DOFS, IN_WAVES, WAVE, quantity
+from calibration.campaign.manifest_sections import CHANNELS, DOFS, GAUGES, IN_WAVES, SECOND_WAVE, WAVE, quantity
 from calibration.campaign.stated_sizes import stated_size_problems
 from calibration.campaign.tracked_point import missing_angles
 from jaxhydro.errors import Problem, suggest
@@ -28,7 +28,14 @@ def channel_problems(manifest: Manifest) -> Iterator[Problem]:
     elif len(manifest.channels) < 2:
         yield Problem("channels", "a motion beside time: " + ", ".join(DOFS), "time only")
     units = [(f"channels.{name}", name, channel.unit) for name, channel in manifest.channels.items()]
-    units += [("wave_channel", WAVE, manifest.wave_channel.unit)] if manifest.wave_channel is not None else []
+    gauges = (("wave_channel", WAVE, manifest.wave_channel), ("second_wave_channel", SECOND_WAVE, manifest.second_wave_channel))
+    units += [(key, name, gauge.unit) for key, name, gauge in gauges if gauge is not None]
+    if manifest.second_wave_channel is not None:
+        for key, _, gauge in gauges:
+            if gauge is None:
+                yield Problem(key, "a first gauge, beside second_wave_channel", "none")
+            elif gauge.position is None:
+                yield Problem(f"{key}.position", "the position of each of two gauges, m", "none")
     for i, test in enumerate(manifest.tests):
         for name, override in test.channels.items():
             if name not in manifest.all_channels:
@@ -38,8 +45,8 @@ def channel_problems(manifest: Manifest) -> Iterator[Problem]:
             elif override is not None and override.unit is not None:
                 units.append((f"tests[{i}].channels.{name}", name, override.unit))
     for where, name, unit in units:
-        if name not in (*CHANNELS, WAVE) or where == "channels.wave":
-            hint = "Waves have their own key, wave_channel." if name == WAVE else suggest(name, CHANNELS)
+        if name not in (*CHANNELS, *GAUGES) or where in ("channels.wave", "channels.second_wave"):
+            hint = f"Waves have their own key, {name}_channel." if name in GAUGES else suggest(name, CHANNELS)
             yield Problem(where, "one of " + ", ".join(CHANNELS), repr(name), hint)
         elif unit not in (allowed := SI[quantity(name)]):
             yield Problem(
@@ -76,6 +83,14 @@ def test_problems(manifest: Manifest) -> Iterator[Problem]:
         if in_waves and not test.sea.long_crested and manifest.records.order != 1:
             hint = "Second order is not separated from a record of one gauge then."
             yield Problem(f"{where}.sea", "records: {order: 1} with waves of several headings", "order: 2", hint)
+        if in_waves and SECOND_WAVE in manifest.channels_of(test):
+            hint = "`channels: {second_wave: null}` takes the first gauge alone."
+            if not test.sea.long_crested:
+                yield Problem(
+                    f"{where}.sea", "a heading alone, since two gauges tell incident from reflected waves", "more", hint
+                )
+            elif manifest.records.order != 1:
+                yield Problem(where, "records: {order: 1} with two wave gauges", "order: 2", hint)
         if manifest.tracked_point is not None:
             yield from (
                 Problem(f"{where}, {p.where}", p.expected, p.found, p.hint)

@@ -16,6 +16,8 @@ from jaxhydro.waves.irregular_sea import Acting
 DOFS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 CHANNELS = ("time", *DOFS)
 WAVE = "wave"  # the wave channel's name among the others
+SECOND_WAVE = "second_wave"  # that of a second wave gauge
+GAUGES = (WAVE, SECOND_WAVE)
 
 
 def quantity(channel: str) -> str:

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration.campaign.manifest import Manifest
-from calibration.campaign.manifest_sections import WAVE, Channel, Test, Use, quantity
+from calibration.campaign.manifest_sections import SECOND_WAVE, WAVE, Channel, Test, Use, quantity
 from calibration.campaign.series import Series, frozen_channels, read_series
 from calibration.campaign.signals import noise_level
 from calibration.campaign.tracked_point import move_to_reference, noise_moved_to_reference
@@ -111,6 +111,7 @@ def _record(manifest: Manifest, series: Series, zeros: dict[str, float]) -> Reco
     values = {
         name: column[good] * scale[name] - zeros.get(name, 0.0) for name, column in series.values.items() if name not in out
     }
+    values.pop(SECOND_WAVE, None)  # of the runs alone
     stated = unit_factors(manifest, manifest.all_channels)
     floor = {name: _MIN_NOISE * (1.0 if quantity(name) == "angle" else manifest.scale) for name in values}
     noise = {

@@ -8,7 +8,7 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import platform_source
-from calibration.campaign.manifest_sections import IN_WAVES, WAVE
+from calibration.campaign.manifest_sections import GAUGES, IN_WAVES, SECOND_WAVE, WAVE
 from calibration.campaign.records import Record, unit_factors, whole_series
 from calibration.campaign.series import valid_values
 from calibration.campaign.wave_directions import StatedDirections, stated_directions
@@ -18,6 +18,19 @@ MIN_SAMPLES = 20  # samples
 # of a step, by which a time may miss the even clock that fits all best: rounding in a file does half of it
 MAX_CLOCK_ERROR = 0.2
 LONGEST_GAP = 3  # samples of the wave that may be missing in a row, and are drawn straight
+
+
+@dataclass(frozen=True, eq=False)
+class SecondWave:
+    """Elevation at a second gauge.
+
+    Attributes:
+        wave: (n,) surface elevation (m), zero in still water.
+        position: Position of the gauge (m).
+    """
+
+    wave: np.ndarray
+    position: tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +46,7 @@ class Run:
         records: Tests that are windows of the file.
         notes: Remarks in words.
         directions: Stated directions of waves of several headings, or None.
+        second: A second gauge, which tells incident from reflected waves, or None.
     """
 
     file: str
@@ -43,6 +57,12 @@ class Run:
     records: tuple[Record, ...]
     notes: tuple[str, ...]
     directions: StatedDirections | None = None
+    second: SecondWave | None = None
+
+    @property
+    def several_headings(self) -> bool:
+        """Whether its waves have several headings, so that it is compared and not fitted."""
+        return self.directions is not None or self.second is not None
 
     @property
     def step(self) -> float:
@@ -94,22 +114,31 @@ def _run(campaign: Campaign, records: Sequence[Record]) -> Run:
     if WAVE not in series.values:
         raise InputError(where, [Problem(f"{where} of test {test.id}", "a wave channel, since waves drive it", "none")])
     scale = unit_factors(manifest, series.channels)
-    valid = valid_values(series.time) & valid_values(series.values[WAVE])
-    time, wave = series.time[valid], series.values[WAVE][valid]
+    gauges = [name for name in GAUGES if name in series.values]
+    valid = valid_values(series.time) & np.all([valid_values(series.values[name]) for name in gauges], axis=0)
+    time = series.time[valid]
     first = np.concatenate([[True], np.diff(time) != 0])
-    even, wave, missing = on_even_clock(time[first], wave[first], where, series.channels["time"].unit)
+    unit, waves = series.channels["time"].unit, {}
+    for name in gauges:
+        even, wave, missing = on_even_clock(time[first], series.values[name][valid][first], where, unit)
+        waves[name] = wave * scale[name] - still.get(name, 0.0)
     notes = [f"{where}: {missing} samples are missing, and drawn straight"] if missing else []
+    second = None
+    if manifest.second_wave_channel is not None and manifest.second_wave_channel.position and SECOND_WAVE in waves:
+        x, y = manifest.second_wave_channel.position
+        second = SecondWave(waves[SECOND_WAVE], (x * manifest.scale, y * manifest.scale))
     position = records[0].wave_position
     assert position is not None
     return Run(
         test.file,
         even * scale["time"],
-        wave * scale[WAVE] - still.get(WAVE, 0.0),
+        waves[WAVE],
         position,
         math.radians(test.sea.mean_heading),
         tuple(sorted(records, key=lambda r: r.time[0])),
         tuple(notes),
         stated_directions(test.sea, manifest.scale),
+        second,
     )
 
 

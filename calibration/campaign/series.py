@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calibration.campaign.manifest import Manifest
-from calibration.campaign.manifest_sections import IN_WAVES, WAVE, Channel, Test
+from calibration.campaign.manifest_sections import GAUGES, IN_WAVES, Channel, Test
 from calibration.campaign.release import FreeMotion, free_motion
 from calibration.campaign.signals import missing_code, resolution
 from jaxhydro.errors import InputError, Problem, suggest
@@ -24,7 +24,7 @@ _LARGEST_VALUE = 1e15  # what is larger stands for a missing value
 class Series:
     """Part of a data file that belongs to one test, in the file's own units; of a decay, the free motion.
 
-    Nothing is converted or repaired. `values` has the elevation as `wave`.
+    Nothing is converted or repaired. `values` has the elevation as `wave`, that of a second gauge as `second_wave`.
     """
 
     test: Test
@@ -106,7 +106,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
                 )
             )
         elif column not in names if isinstance(column, str) else column >= len(names):
-            if channel == WAVE and test.kind not in IN_WAVES and WAVE not in test.channels:
+            if channel in GAUGES and test.kind not in IN_WAVES and channel not in test.channels:
                 del channels[channel]  # no waves, and none measured
                 continue
             problems.append(Problem(where, f"a column {column!r}", ", ".join(names[:12]), suggest(column, names)))
@@ -182,6 +182,6 @@ def frozen_channels(series: Series) -> set[str]:
     """
     if series.test.kind != "decay" and series.test.kind not in IN_WAVES:
         return set()
-    good, motions = series.good, set(series.values) - {WAVE}
+    good, motions = series.good, set(series.values) - set(GAUGES)
     still = {name for name in motions if resolution(series.values[name][good]) == 0}
     return still if still < motions else set()

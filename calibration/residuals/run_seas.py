@@ -20,6 +20,8 @@ from jaxhydro.errors import InputError, Problem
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.recorded_waves import separated_record
 from jaxhydro.waves.sea_limits import sea_limits
+from jaxhydro.waves.two_gauges import IncidentAndReflected, incident_and_reflected
+from jaxhydro.waves.wave_errors import GaugeSpacingError
 
 MAX_MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
 MIN_BAND_SHARE = 0.95  # of its variance, that should lie in the band
@@ -55,26 +57,41 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     Raises:
         InputError: The order, the band or the record is unsuitable.
     """
-    if run.directions is not None and options.order != 1:
-        raise InputError(run.file, [Problem("order", "1 in a sea of several headings, as its test states", f"{options.order}")])
-    inside = share_within(run.wave, run.step, options.low, options.cutoff)
+    if run.several_headings and options.order != 1:
+        expected = "1 in a sea of several headings" + ("" if run.directions is None else ", as its test states")
+        raise InputError(run.file, [Problem("order", expected, f"{options.order}")])
+    inside, notes = share_within(run.wave, run.step, options.low, options.cutoff), []
     try:
-        separated = separated_record(
-            run.time,
-            run.wave,
-            environment,
-            position=run.position,
-            heading=run.heading,
-            low=options.low,
-            cutoff=options.cutoff,
-            order=options.order,
-            kinds=options.kinds,
-            highest_difference=options.highest_difference,
-        )
+        if run.second is None:
+            waves, mismatch, rounds = separated_record(
+                run.time,
+                run.wave,
+                environment,
+                position=run.position,
+                heading=run.heading,
+                low=options.low,
+                cutoff=options.cutoff,
+                order=options.order,
+                kinds=options.kinds,
+                highest_difference=options.highest_difference,
+            )
+        else:
+            both = incident_and_reflected(
+                run.time,
+                (run.wave, run.second.wave),
+                environment,
+                positions=(run.position, run.second.position),
+                heading=run.heading,
+                low=options.low,
+                cutoff=options.cutoff,
+            )
+            waves, mismatch, rounds = both.waves, both.mismatch, both.rounds
+            notes.append(reflection_note(run.file, both))
+    except GaugeSpacingError as error:
+        raise InputError(run.file, [Problem("second_wave_channel.position", error.expected, error.found)]) from None
     except ValueError as error:
         expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
         raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
-    waves, notes = separated.waves, []
     if run.directions is not None:
         waves = run.directions.turned(waves, run.position)
         notes.append(
@@ -91,9 +108,9 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         acting=options.acting,
     )
     band = f"{options.low:g} to {options.cutoff:g} Hz"
-    if separated.mismatch > MAX_MISMATCH:
+    if mismatch > MAX_MISMATCH:
         notes.append(
-            f"{run.file}: first and second order miss {100 * separated.mismatch:.2g} % of the wave record from {band} "
+            f"{run.file}: first and second order miss {100 * mismatch:.2g} % of the wave record from {band} "
             "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it"
         )
     if inside < MIN_BAND_SHARE:
@@ -106,7 +123,18 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         count = float(run.time[-1] - run.time[0]) / period
         limits = sea_limits(4 * float(np.std(run.wave)), period, environment, options.order, count)
         notes += [f"{run.file}: {limit.text}" for limit in limits]
-    return RunSea(sea, separated.mismatch, separated.rounds, inside, tuple(notes))
+    return RunSea(sea, mismatch, rounds, inside, tuple(notes))
+
+
+def reflection_note(file: str, both: IncidentAndReflected) -> str:
+    """Remark on the incident and reflected waves of a run."""
+    incident, reflected = both.significant_heights
+    low, high = both.band
+    return (
+        f"{file}: two gauges find incident waves of Hs {incident:.3g} m and reflected ones of {reflected:.2g} m. "
+        f"The reflection coefficient is {both.reflection_coefficient:.2g}. {both.share_outside:.1%} of the energy is outside "
+        f"{low:.3g} to {high:.3g} Hz, where these gauges separate"
+    )
 
 
 def with_diffraction(model: Model, options: Options) -> Model:
@@ -132,10 +160,12 @@ def seas_of(campaign: Campaign, environment: Environment, options: Options, seve
         InputError: A record makes no sea, or a sea has several headings and may not.
     """
     campaign_runs = runs(campaign)
-    spread = [record.id for run in campaign_runs if run.directions is not None for record in run.records]
+    spread = [record.id for run in campaign_runs if run.several_headings for record in run.records]
     if spread and not several_headings:
         expected = "tests in long-crested waves: seas of several headings can be simulated and compared, not fitted"
         remedy = "Mark such tests `use: ignore`, or state the heading alone."
+        if any(run.second is not None for run in campaign_runs):
+            remedy = "Mark such tests `use: ignore`, or take one gauge: `channels: {second_wave: null}`."
         raise InputError(str(campaign.folder / "campaign.yaml"), [Problem("tests", expected, ", ".join(spread), remedy)])
     made = [(run, sea_of(run, environment, options)) for run in campaign_runs]
     if made and options.order == 2 and not campaign.manifest.records.model_fields_set:
