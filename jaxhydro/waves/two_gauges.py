@@ -35,6 +35,8 @@ class IncidentAndReflected(NamedTuple):
         waves: Components of two wave trains: the incident waves, then the reflected ones with the opposite heading.
         band: Lowest and highest frequency (Hz) at which the gauges separate: their spacing is 0.05 to 0.45 wavelengths.
         share_outside: Fraction of the waves' energy outside `band`.
+        significant_heights: Significant wave heights of the incident and of the reflected waves (m): 4 standard deviations of
+            their elevations at the first gauge, within the record.
         mismatch: As in `Separation`; both gauges together (-).
         rounds: Number of iterations.
     """
@@ -42,14 +44,9 @@ class IncidentAndReflected(NamedTuple):
     waves: Components
     band: tuple[float, float]
     share_outside: float
+    significant_heights: tuple[float, float]
     mismatch: float
     rounds: int
-
-    @property
-    def significant_heights(self) -> tuple[float, float]:
-        """Significant wave heights 4 sqrt(m0) of the incident and of the reflected waves (m)."""
-        incident, reflected = 0.5 * np.asarray(self.waves.amplitude).reshape(2, -1) ** 2
-        return 4 * math.sqrt(incident.sum()), 4 * math.sqrt(reflected.sum())
 
     @property
     def reflection_coefficient(self) -> float:
@@ -150,15 +147,20 @@ def incident_and_reflected(
         )
         return dataclasses.replace(made, trains=2)
 
+    def result(amplitudes: np.ndarray, mismatch: float, rounds: int) -> IncidentAndReflected:
+        made = waves(amplitudes)
+        trains = np.asarray(made.complex_amplitude()).reshape(2, -1) * _turn(k, along)[:, 0].T
+        heights = _heights(trains, omega, first, np.asarray(times, float))
+        return IncidentAndReflected(made, band, share_outside, heights, mismatch, rounds)
+
     if order == 1:
-        return IncidentAndReflected(waves(at_gauges), band, share_outside, 0.0, 0)
+        return result(at_gauges, 0.0, 0)
 
     def bound(amplitudes: np.ndarray) -> np.ndarray:
         made, inside = waves(amplitudes), slice(first, first + omega.size)
         return np.stack([np.asarray(second_order_elevation(made, environment, at))[inside] for at in positions])
 
-    best, mismatch, rounds = first_order_part(at_gauges, bound, tolerance)
-    return IncidentAndReflected(waves(best), band, share_outside, mismatch, rounds)
+    return result(*first_order_part(at_gauges, bound, tolerance))
 
 
 def separated_amplitudes(
@@ -196,6 +198,18 @@ def separated_band(spacing: float, environment: Environment) -> tuple[float, flo
     depth, gravity = float(environment.depth), float(environment.gravity)
     low, high = (2 * math.pi * part / spacing for part in SEPARATED_SPACING)  # wavenumbers, rad/m
     return tuple(math.sqrt(gravity * k * math.tanh(k * depth)) / (2 * math.pi) for k in (low, high))  # type: ignore[return-value]
+
+
+def _heights(
+    trains: Complex[np.ndarray, "2 w"], omega: Float[np.ndarray, " w"], first: int, times: Float[np.ndarray, " t"]
+) -> tuple[float, float]:
+    """4 standard deviations (m) of the elevation of each wave train within the record, without its continuation."""
+    step = (times[-1] - times[0]) / (times.size - 1)
+    length = round(first * 2 * math.pi / omega[0] / step)
+    spectrum = np.zeros((2, length // 2 + 1), complex)
+    spectrum[:, first : first + omega.size] = 0.5 * length * trains * np.exp(1j * omega * times[0])
+    incident, reflected = 4 * np.fft.irfft(spectrum, length)[:, : times.size].std(axis=1)
+    return float(incident), float(reflected)
 
 
 def _share_outside(measured: Complex[np.ndarray, "2 w"], omega: Float[np.ndarray, " w"], band: tuple[float, float]) -> float:

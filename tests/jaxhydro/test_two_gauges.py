@@ -109,6 +109,7 @@ def test_ends_of_a_record_are_no_reflection() -> None:
     synthetic = Synthetic(0.0, harmonic=False)
     found = separated(synthetic, cutoff=0.3)
     assert float(found.waves.period) > DURATION and found.significant_heights[1] < 0.005 * HEIGHT
+    assert found.significant_heights[0] == pytest.approx(4 * np.std(synthetic.elevation(GAUGES[0])), rel=0.002)
     middle = slice(int(120 / STEP), -int(120 / STEP))
     predicted = IrregularSea(found.waves, WATER).gauge(TIMES, (0.0, 0.0))
     expected = synthetic.elevation((0.0, 0.0))
