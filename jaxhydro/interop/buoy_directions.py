@@ -50,7 +50,7 @@ def _shares(basis: Float[np.ndarray, "4 d"], target: Float[np.ndarray, "4"]) -> 
         centred = basis - (basis @ share)[:, None]
         return (centred * share) @ centred.T
 
-    found = minimize(
+    solution = minimize(
         lambda x: logsumexp(x @ basis) - x @ target,
         np.zeros(4),
         jac=lambda x: basis @ shares(x) - target,
@@ -58,4 +58,4 @@ def _shares(basis: Float[np.ndarray, "4 d"], target: Float[np.ndarray, "4"]) -> 
         method="trust-exact",
         options={"gtol": TOLERANCE},
     )
-    return shares(found.x)
+    return shares(solution.x)

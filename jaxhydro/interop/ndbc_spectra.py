@@ -98,11 +98,11 @@ def _coefficients(
     path: Path, number: int, density: np.ndarray, values: dict[str, np.ndarray]
 ) -> tuple[Complex[np.ndarray, " n"], Complex[np.ndarray, " n"]]:
     """Fourier coefficients; frequencies without directions take those of the nearest that has them."""
-    known = np.all([np.isfinite(column) for column in values.values()], axis=0)
-    if density.sum() > 0 and density[~known].sum() > MAX_UNKNOWN * density.sum():
-        found = f"none for {density[~known].sum() / density.sum():.0%} of it"
+    complete = np.all([np.isfinite(column) for column in values.values()], axis=0)
+    if density.sum() > 0 and density[~complete].sum() > MAX_UNKNOWN * density.sum():
+        found = f"none for {density[~complete].sum() / density.sum():.0%} of it"
         raise InputError(str(path), [Problem(f"line {number}", f"directions for {1 - MAX_UNKNOWN:.0%} of the energy", found)])
-    places = np.flatnonzero(known)
+    places = np.flatnonzero(complete)
     if not places.size:
         raise InputError(str(path), [Problem(f"line {number}", "waves with directions", "none")])
     nearest = places[np.argmin(np.abs(np.arange(len(density))[:, None] - places), axis=1)]
