@@ -194,6 +194,12 @@ def separated_band(spacing: float, environment: Environment) -> tuple[float, flo
     Args:
         spacing: Distance of the gauges along the waves (m).
         environment: Water depth and gravity.
+
+    Returns:
+        The two frequencies (Hz), at which the spacing is 0.05 and 0.45 wavelengths.
+
+    References:
+        Goda and Suzuki (1976), as in `incident_and_reflected`: the two spacings.
     """
     depth, gravity = float(environment.depth), float(environment.gravity)
     low, high = (2 * math.pi * part / spacing for part in SEPARATED_SPACING)  # wavenumbers, rad/m

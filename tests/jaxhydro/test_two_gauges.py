@@ -95,7 +95,6 @@ def test_without_reflection_there_is_none() -> None:
     noise = 0.05
     noisy = separated(Synthetic(0.0), noise)
     # white noise in the band, amplified by the spacing: a_R = sum exp(-iks) e / (2 sin^2 k ds) without a prior
-
     k = np.asarray(noisy.waves.wavenumber).reshape(2, -1)[0]
     sine = np.sin(k * 20.0) ** 2
     variance = noise**2 * 2 * STEP / DURATION * (2 * sine / (2 * sine + 0.01) ** 2)
@@ -127,6 +126,28 @@ def test_band_and_share_outside() -> None:
     frequency = synthetic.omega / (2 * np.pi)
     outside = (synthetic.amplitude**2)[(frequency < limits[0]) | (frequency > limits[1])].sum() / (synthetic.amplitude**2).sum()
     assert found.share_outside == pytest.approx(outside, rel=0.1)
+
+
+def test_reflected_waves_drive_the_platform_against_the_heading() -> None:
+    """Motions in the separated waves are those in the waves that were made, with phases and headings of their own."""
+    model, synthetic, band = jh.load_model("volturnus-s"), Synthetic(0.2), {"low": 0.09, "cutoff": 0.12}
+    found = separated(synthetic, **band).waves
+    frequency = synthetic.omega / (2 * np.pi)
+    inside = (frequency >= 0.09 - 1e-9) & (frequency <= 0.12 + 1e-9)
+    made = dataclasses.replace(
+        found,
+        amplitude=np.concatenate([synthetic.amplitude[inside], synthetic.reflected[inside]]),
+        phase=np.concatenate([synthetic.phase[inside], synthetic.reflected_phase[inside]]),
+        heading=np.repeat([0.0, np.pi], inside.sum()),
+    )
+    incident = dataclasses.replace(made, amplitude=np.where(np.asarray(made.heading) == 0.0, made.amplitude, 0.0))
+    assert np.asarray(found.omega)[: inside.sum()] == pytest.approx(synthetic.omega[inside])
+    times = np.arange(0.0, 120.0, 0.5)
+    motions = [jh.simulate(model, times, IrregularSea(waves, WATER)) for waves in (found, made, incident)]
+    for name in ("surge", "heave", "pitch"):
+        of_found, of_made, of_incident = (np.asarray(motion[name]) for motion in motions)
+        assert np.abs(of_found - of_made).max() < 0.02 * np.std(of_made), name
+        assert np.abs(of_incident - of_made).max() > 0.1 * np.std(of_made), name
 
 
 @pytest.mark.parametrize(
