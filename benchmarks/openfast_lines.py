@@ -74,7 +74,7 @@ def thin(lines: str, density: float) -> str:
 
 
 def parts(times: Float[np.ndarray, " t"], motion: Float[np.ndarray, "3 t"]) -> dict[str, Any]:
-    """Mean of surge (m), and standard deviations (m, deg) of slow motions and of those at the waves' frequencies."""
+    """Mean of surge (m), and standard deviations (m, deg) of slow motions and of wave-frequency motions."""
     late = motion[:, times >= TRANSIENT]
     spectrum = np.fft.rfft(late - late.mean(axis=1, keepdims=True))
     slow = np.fft.rfftfreq(late.shape[1], float(np.diff(times).mean())) < SPLIT

@@ -211,6 +211,8 @@ def with_record(sea: RequestedSea, file: Path, table: Any, options: Mapping[str,
             found = f"{stated[name]}, as the file states"
             raise wrong_file(f"column {name}", f"a unit of {unit}", found, "--wave-unit says which.")
         elevation = elevation * UNITS[unit]
+        if not np.ptp(elevation):
+            raise wrong_file(f"column {name}", "an elevation that changes", f"{elevation[0]:g} m throughout")
         height = 4 * float(np.std(elevation))
         # of waves in deep water: no other makes them longer
         length = 9.80665 / (2 * np.pi) * record_peak_period(elevation, step) ** 2

@@ -102,7 +102,8 @@ def incident_and_reflected(
         The incident and the reflected waves, with phases at the origin.
 
     Raises:
-        GaugeSpacingError: The gauges are at one position along the waves, or separate less than half of the energy.
+        GaugeSpacingError: The gauges are at one position along the waves, or separate less than half of the energy, or the
+            reflected waves are the higher ones.
         ValueError: As in `separated_record`.
 
     References:
@@ -151,7 +152,13 @@ def incident_and_reflected(
         made = waves(amplitudes)
         trains = np.asarray(made.complex_amplitude()).reshape(2, -1) * _turn(k, along)[:, 0].T
         heights = _heights(trains, omega, first, np.asarray(times, float))
-        return IncidentAndReflected(made, band, share_outside, heights, mismatch, rounds)
+        both = IncidentAndReflected(made, band, share_outside, heights, mismatch, rounds)
+        if both.reflection_coefficient > 1:
+            raise GaugeSpacingError(
+                "positions for which incident waves are higher than reflected ones",
+                f"a reflection coefficient of {both.reflection_coefficient:.3g}: are the gauges exchanged, or the heading?",
+            )
+        return both
 
     if order == 1:
         return result(at_gauges, 0.0, 0)

@@ -22,7 +22,7 @@ class NoWaveError(ValueError):
 
 
 class GaugeSpacingError(ValueError):
-    """Two wave gauges are too close or too far apart to tell incident from reflected waves.
+    """Two wave gauges are where they cannot tell incident from reflected waves, or not where they are said to be.
 
     Attributes:
         expected: Positions that are expected.

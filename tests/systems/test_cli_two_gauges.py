@@ -27,7 +27,12 @@ def elevation(x: float, reflection: float) -> np.ndarray:
 @pytest.fixture
 def tank(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     table = {"time_s": TIMES, "near": elevation(-100.0, 0.0), "far": elevation(-80.0, 0.0)}
-    table |= {"near_r": elevation(-100.0, 0.2), "far_r": elevation(-80.0, 0.2), "mm": 1000 * elevation(-80.0, 0.0)}
+    table |= {
+        "near_r": elevation(-100.0, 0.2),
+        "far_r": elevation(-80.0, 0.2),
+        "mm": 1000 * elevation(-80.0, 0.0),
+        "dead": 0 * TIMES,
+    }
     pd.DataFrame(table).to_csv(tmp_path / "tank.csv", index=False)
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -64,6 +69,8 @@ def test_reflected_waves_are_told(tank) -> None:
         (("--second-wave-column", "near", *SECOND[2:]), "another column than that of --wave-column expected, found near"),
         (("--second-wave-column", "fat", *SECOND[2:]), "tank.csv: expected a column 'fat'"),
         (("--second-wave-column", "mm", *SECOND[2:]), "column mm: expected waves less than 1/7 as high as long"),
+        (("--second-wave-column", "dead", *SECOND[2:]), "tank.csv: column dead: expected an elevation that changes, found 0 m"),
+        ((*SECOND[:2], "--second-wave-position", -120, 0), "expected positions for which incident waves are higher"),
         ((*SECOND[:2], "--second-wave-position", "nan", 0), "--second-wave-position: a finite number expected"),
         ((*SECOND[:2], "--second-wave-position", -100, 9), "expected two gauges apart along the waves, found 0 m"),
         ((*SECOND[:2], "--second-wave-position", 20, 0), "120 m between them, for 0.0177 to 0.0765 Hz, with 0% of the energy"),

@@ -210,9 +210,9 @@ def _spans(
     return [(name, axial, span) for name, axial, span in parts if axial is not None]
 
 
-def _alike(one: EndCoefficients, other: EndCoefficients) -> bool:
-    """Whether coefficients are the same but for rounding."""
-    return one.law == other.law and np.allclose([one.drag, one.mass], [other.drag, other.mass], rtol=_SAME, atol=0.0)
+def _alike(end: EndCoefficients, side: EndCoefficients) -> bool:
+    """Whether coefficients of an end and of the sides are the same but for rounding."""
+    return end.law == side.law and np.allclose([end.drag, end.mass], [side.drag, side.mass], rtol=_SAME, atol=0.0)
 
 
 def _with_ends(across: dict[str, float], end: EndCoefficients) -> dict[str, Any]:
