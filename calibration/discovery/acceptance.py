@@ -71,7 +71,8 @@ class HeldOutComparison(NamedTuple):
     def relevance(self) -> float:
         """Largest decrease of a motion's error in a region, divided by the smallest decrease that matters.
 
-        In motions other than a decay's own, only the noise floor sets what matters.
+        Fitted tests count beside the compared ones: they may be the only ones in which the effect is large. In motions other
+        than a decay's own, only the noise floor sets what matters.
         """
         study = self.study
         samples = np.array([[series.samples] for series in study.series])
@@ -83,8 +84,9 @@ class HeldOutComparison(NamedTuple):
         motion = np.where(decay, spread, np.sqrt(np.maximum(squares - noise, 0.0)) / of_floor)
         asked = np.where(study.main[:, None], MIN_MOTION_SHARE * motion, math.inf)
         least = np.minimum(asked, MIN_FLOOR_MULTIPLE * np.where(decay, floor_rms, np.sqrt(squares)))
-        fallen = (self.before.parts - self.after.parts)[self.compared]
-        return float((fallen / np.maximum(least[self.compared], 1e-300)).max(initial=0.0))
+        counted = study.used | self.compared
+        fallen = (self.before.parts - self.after.parts)[counted]
+        return float((fallen / np.maximum(least[counted], 1e-300)).max(initial=0.0))
 
 
 class Verdict(NamedTuple):

@@ -15,7 +15,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from calibration.campaign.manifest import platform_source
-from calibration.discovery.diagnosis import Rejected, Score
+from calibration.discovery.diagnosis import DetectionLimit, Rejected, Score
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.search import AcceptedEffect, ListedVariant, Search
@@ -38,6 +38,7 @@ class Checkpoint:
         rejected: Rejected effects by name.
         notes: Notes of the search.
         shortlist: Candidates that later rounds are about.
+        limits: Detection limits of candidates by name.
         alone: Residual of a fit to decays alone, or None.
         begun: Parameter coordinates where the search began (p,).
         seconds: Computing time (s).
@@ -50,6 +51,7 @@ class Checkpoint:
     rejected: dict[str, Rejected]
     notes: tuple[str, ...]
     shortlist: tuple[ListedVariant, ...]
+    limits: dict[str, tuple[DetectionLimit, ...]]
     alone: ResidualSummary | None
     begun: np.ndarray
     seconds: float
@@ -81,6 +83,7 @@ def save_checkpoint(path: Path, search: Search, states: list[FitState], seconds:
         search.record.rejected,
         tuple(search.record.notes),
         tuple(search.record.shortlist),
+        search.record.limits,
         search.record.alone,
         np.asarray(search.fits.begun),
         seconds,
@@ -135,6 +138,7 @@ def load_checkpoint(path: Path, search: Search, tell: Callable[[str], None] = la
     )
     search.record.notes, search.record.shortlist = list(reached.notes), list(reached.shortlist)
     search.record.alone, search.record.earlier = reached.alone, reached.seconds
+    search.record.limits = reached.limits
     search.fits.anchor(reached.begun)
     return list(reached.states)
 

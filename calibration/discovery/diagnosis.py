@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -34,6 +34,28 @@ class Outcome(StrEnum):
     UNEXPLAINED = "unexplained"
 
 
+class DetectionLimit(NamedTuple):
+    """Size from which an effect that is not named would have been. See `calibration.discovery.selection.detection_limits`.
+
+    Sizes are distances from the neutral value (SI).
+
+    Attributes:
+        label: Label of the amplitude.
+        smallest: The limit at the shape of the effect that the records tell best; infinite where no size would be named.
+        largest: The limit at the shape that they tell least.
+        plausible: Largest plausible size.
+        told: Fraction of what the effect does to the records that nothing else in the model can follow (0 to 1), at `smallest`.
+        unit: Unit of the sizes.
+    """
+
+    label: str
+    smallest: float
+    largest: float
+    plausible: float
+    told: float
+    unit: str
+
+
 @dataclass(frozen=True, eq=False)
 class Rejected:
     """An effect that was tried and is not in the model.
@@ -43,12 +65,14 @@ class Rejected:
         degree_of_freedom: The motion it acts in, or None.
         reason: Why it was rejected.
         taken_out: The verdict that removed it from the model, where it was in it.
+        limits: Detection limits of its amplitudes; none where they were not computed.
     """
 
     effect: str
     degree_of_freedom: str | None
     reason: Refusal
     taken_out: Verdict | None = None
+    limits: tuple[DetectionLimit, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -73,7 +74,7 @@ def conclude(
         baseline,
         augmented,
         effects,
-        tuple(record.rejected.values()),
+        tuple(replace(rejected, limits=record.limits.get(name, ())) for name, rejected in record.rejected.items()),
         tuple(record.scores),
         anatomy(fits, before),
         residuals,

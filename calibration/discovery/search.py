@@ -7,7 +7,7 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.discovery.acceptance import Verdict
-from calibration.discovery.diagnosis import Rejected, Score
+from calibration.discovery.diagnosis import DetectionLimit, Rejected, Score
 from calibration.discovery.effect_fits import EffectFits, ReportStage
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.fit_state import FitState, ResidualSummary
@@ -61,6 +61,7 @@ class SearchRecord:
         alone: Residual of a calibration to decays alone, where there are seas too.
         accepted: Evidence of the accepted effects by name.
         shortlist: Candidates that helped in the rounds along all candidates, or were in probable sets.
+        limits: Detection limits of the amplitudes of candidates by name, in the last round along them.
     """
 
     scores: list[Score] = field(default_factory=list)
@@ -70,6 +71,7 @@ class SearchRecord:
     alone: ResidualSummary | None = None
     accepted: dict[str, AcceptedEffect] = field(default_factory=dict)
     shortlist: list[ListedVariant] = field(default_factory=list)
+    limits: dict[str, tuple[DetectionLimit, ...]] = field(default_factory=dict)
 
     def reject(self, candidate: Candidate, why: Refusal | None, taken_out: Verdict | None = None) -> None:
         """Record why a candidate is not in the model.

@@ -4,6 +4,7 @@ from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
 from calibration.formatting import bracketed, number, percent, quantity, readable_unit, with_deviation
 from calibration.report.diagnosis_words import (
+    describe_limit,
     describe_probability,
     describe_range,
     is_determined,
@@ -18,6 +19,8 @@ from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 USE_ORDER = list(USE)
 MAX_RELATIVE_ERROR = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything
 NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
+MIN_TOLD = 1e-4  # a smaller part of an effect that is told apart is not worth its digits
+NOT_OBSERVABLE = "these records would not show it at a plausible size"
 VARIED = (
     "Properties that are nearly known, trim among them, fitted near the platform file's values. Standard deviations: mass "
     f"{percent(MASS)}, inertia {percent(INERTIA)}, moorings {percent(STIFFNESS)}. The centre of mass has "
@@ -133,9 +136,26 @@ def rejected(saved: DiagnosisFile) -> Rows:
     """Effects that were tried and are not in the model; those with the same reason share a row."""
     reasons: dict[str, list[str]] = {}
     for rejection in saved.missing.rejected:
-        reasons.setdefault(rejection.reason, []).append(effect_in_words(rejection.effect, rejection.degree_of_freedom))
+        reason = rejection.reason if rejection.observable else f"{rejection.reason}; {NOT_OBSERVABLE}"
+        reasons.setdefault(reason, []).append(effect_in_words(rejection.effect, rejection.degree_of_freedom))
     rows = [("; ".join(names), reason) for reason, names in reasons.items()]
     return ("Effect", "Why not"), rows
+
+
+def detection_limits(saved: DiagnosisFile) -> Rows:
+    """Sizes from which effects that are not named would have been, beside their largest plausible sizes."""
+    rows = []
+    for rejection in saved.missing.rejected:
+        words = effect_in_words(rejection.effect, rejection.degree_of_freedom)
+        for i, (name, limit) in enumerate(rejection.detection_limits.items()):
+            row = (plain_name(name), describe_limit(limit), quantity(limit.plausible, None, limit.unit), told_apart(limit.told))
+            rows.append(("" if i else words, *row))
+    return ("Effect", "Parameter", "Named from", "Plausible up to", "Told apart"), rows
+
+
+def told_apart(fraction: float) -> str:
+    """A fraction in per cent, of which the smallest are not worth their digits."""
+    return percent(fraction) if fraction >= MIN_TOLD else f"below {percent(MIN_TOLD)}"
 
 
 def anatomy(saved: DiagnosisFile) -> Rows:

@@ -7,7 +7,7 @@ from calibration.discovery.effects.effect_names import capitalised, effect_in_wo
 from calibration.discovery.reported_effects import WAVE_ORDER
 from calibration.formatting import listed, number, percent, quantity, quantity_range
 from calibration.results.calibration_file import Parameter
-from calibration.results.diagnosis_file import DiagnosisFile, Evidence, FoundEffect
+from calibration.results.diagnosis_file import DetectionLimit, DiagnosisFile, Evidence, FoundEffect
 from calibration.vocabulary import UNDETERMINED
 
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
@@ -17,6 +17,7 @@ WAVES_FIRST = (
     "notes), and diagnose again."
 )
 WHERE = "in the motion and at the frequencies where the error falls most"
+SAME_LIMIT = 1.05  # ratio of two detection limits that are shown as one
 NEAR_ZERO_DEVIATIONS = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
 SMALL_DEVIATION = 0.25  # of the value it began from: a deviation below is small, whatever the value
 EVIDENCE_STRENGTHS = (
@@ -140,6 +141,17 @@ def describe_range(effect: FoundEffect, name: str) -> str:
     size, parameter = effect.plausible.get(name), effect.parameters[name]
     shown = max(abs(parameter.value), parameter.standard_deviation or 0.0)
     return "" if size is None else quantity_range(size.lower, size.upper, parameter.unit, shown)
+
+
+def describe_limit(limit: DetectionLimit) -> str:
+    """The size from which an effect would have been named; a range where it depends on the shape of the effect."""
+    if limit.smallest is None:
+        return "no size"
+    if limit.largest is None:
+        return f"{quantity(limit.smallest, None, limit.unit)}, or not, by its shape"
+    if limit.largest < SAME_LIMIT * limit.smallest:
+        return quantity(limit.smallest, None, limit.unit)
+    return f"{quantity_range(limit.smallest, limit.largest, limit.unit)}, by its shape"
 
 
 def evidence_strength(evidence: Evidence) -> str:

@@ -53,6 +53,24 @@ class FoundEffect(ResultModel):
     trades_against: dict[str, Number] = Field(default_factory=dict)
 
 
+class DetectionLimit(ResultModel):
+    """Size from which an effect would have been named; None: at no size that was tried.
+
+    See `calibration.discovery.diagnosis.DetectionLimit`.
+    """
+
+    smallest: Number | None
+    largest: Number | None
+    plausible: Number
+    told: Number
+    unit: str = ""
+
+    @property
+    def observable(self) -> bool:
+        """Whether the records show the effect at a plausible size."""
+        return self.smallest is not None and self.smallest <= self.plausible
+
+
 class RejectedEffect(ResultModel):
     """An effect that was tried and is not in the model, and why."""
 
@@ -60,6 +78,13 @@ class RejectedEffect(ResultModel):
     degree_of_freedom: str | None = None
     reason: str
     probability: Number | None = None
+    detection_limits: dict[str, DetectionLimit] = Field(default_factory=dict)
+
+    @property
+    def observable(self) -> bool:
+        """Whether the records would show it at a plausible size, as far as that was computed."""
+        limits = self.detection_limits.values()
+        return not limits or any(limit.observable for limit in limits)
 
 
 class MissingEffects(ResultModel):

@@ -15,6 +15,7 @@ from calibration.discovery.reported_forces import LatentForce
 from calibration.results import write_calibration as outputs
 from calibration.results.diagnosis_file import (
     Anatomy,
+    DetectionLimit,
     DiagnosisFile,
     EffectScore,
     Evidence,
@@ -89,15 +90,7 @@ def document(diagnosis: Diagnosis, damping: bool = True) -> DiagnosisFile:
         missing=MissingEffects(
             verdict=diagnosis.verdict,
             effects=[_effect(effect) for effect in diagnosis.effects],
-            rejected=[
-                RejectedEffect(
-                    effect=rejected.effect,
-                    degree_of_freedom=rejected.degree_of_freedom,
-                    reason=describe_refusal(rejected.reason),
-                    **stated(probability=_probability(rejected)),
-                )
-                for rejected in diagnosis.rejected
-            ],
+            rejected=[_rejected(rejected) for rejected in diagnosis.rejected],
             unexplained=Unexplained(
                 share=_share(diagnosis.unexplained_share),
                 signature=diagnosis.signature,
@@ -118,22 +111,45 @@ def document(diagnosis: Diagnosis, damping: bool = True) -> DiagnosisFile:
     )
 
 
-def _effect(effect: Effect) -> FoundEffect:
-    def short(label: str) -> str:  # `force` of `coulomb_friction.surge.force`
-        return label.removeprefix(f"{effect.effect}.").removeprefix(f"{effect.degree_of_freedom}.")
+def _short(label: str, effect: Effect | Rejected) -> str:
+    """`force` of `coulomb_friction.surge.force`."""
+    return label.removeprefix(f"{effect.effect}.").removeprefix(f"{effect.degree_of_freedom}.")
 
+
+def _rejected(rejected: Rejected) -> RejectedEffect:
+    limits = {
+        _short(limit.label, rejected): DetectionLimit(
+            smallest=finite_or_null(limit.smallest),
+            largest=finite_or_null(limit.largest),
+            plausible=float(limit.plausible),
+            told=float(limit.told),
+            unit=limit.unit,
+        )
+        for limit in rejected.limits
+    }
+    return RejectedEffect(
+        effect=rejected.effect,
+        degree_of_freedom=rejected.degree_of_freedom,
+        reason=describe_refusal(rejected.reason),
+        **stated(probability=_probability(rejected), detection_limits=limits),
+    )
+
+
+def _effect(effect: Effect) -> FoundEffect:
     return FoundEffect(
         effect=effect.effect,
         degree_of_freedom=effect.degree_of_freedom,
         meaning=effect.meaning,
         source=effect.source,
-        parameters={short(label): outputs.parameter(value, label=value.label) for label, value in effect.parameters.items()},
+        parameters={
+            _short(label, effect): outputs.parameter(value, label=value.label) for label, value in effect.parameters.items()
+        },
         evidence=Evidence(**_finite(asdict(effect.evidence) | {"probability": _rounded(effect.evidence.probability)})),
         share_of_residual_explained=_share(effect.share),
         indistinguishable_from=list(effect.indistinguishable),
         test_that_would_tell=effect.telling_test,
         **stated(in_doubt=effect.in_doubt),
-        plausible={short(label): PlausibleSizeRange(**asdict(size)) for label, size in effect.plausible.items()},
+        plausible={_short(label, effect): PlausibleSizeRange(**asdict(size)) for label, size in effect.plausible.items()},
         trades_against=dict(effect.trades_against),
     )
 

@@ -468,6 +468,14 @@ def test_what_matters_of_a_decay(channel, least):
         assert (grounds.relevance() >= 1) == matters
 
 
+def test_what_matters_in_a_fitted_test_alone_matters():
+    """A small release shows friction, and a large one that is held out hardly does."""
+    study = study_of(series("surge", 0.1, use="fit"), series("surge", 0.1))
+    before, after = left([1, 1], [0.5, 0.5]), left([0, 1], [0.5 - 1.01 * MIN_MOTION_SHARE, 0.5])
+    assert HeldOutComparison(study, np.array([False, True]), before, after, True).relevance() >= 1
+    assert HeldOutComparison(study, np.array([False, True]), before, before, True).relevance() == 0.0
+
+
 @pytest.mark.parametrize(
     ("numbers", "where", "reason_words"),
     [

@@ -18,6 +18,7 @@ from calibration.discovery.eliminated_least_squares import minus_two_log_likelih
 from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.search import Search
 from calibration.discovery.selection.candidate_columns import LABORATORY_EFFECTS, CandidateColumns, linearise_candidates
+from calibration.discovery.selection.detection_limits import detection_limits
 from calibration.discovery.selection.joint_selection import JointSelection
 from calibration.discovery.selection.subset_fit import fit_subset
 from calibration.discovery.selection.subsets import Subset
@@ -80,6 +81,7 @@ class JointSearch:
         selection = self.selector.run(present)
         self.probability = selection.probability()
         self.score(self.selector.subset(present), number)
+        self.record.limits |= detection_limits(self.fits, columns, self.selector, selection.best)
         if among is None:
             probable = {i for subset in selection.subsets for i in subset.variants}
             self.record.shortlist += columns.listed(probable | self.selector.helpful(selection.best))
