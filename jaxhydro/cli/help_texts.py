@@ -43,11 +43,12 @@ CONVERTING = "\n\n".join(
     (
         "[bold]Examples[/bold]",
         "jaxhydro convert deck/main.fst --out my-platform",
-        "jaxhydro convert nemoh-case --out my-platform",
+        "jaxhydro convert nemoh-case --out my-platform --mooring moordyn.dat",
+        "jaxhydro convert moordyn.dat --out my-lines",
         "jaxhydro simulate my-platform/platform.yaml --release heave=1",
         "[bold]What it writes[/bold]",
         "platform.yaml, copies of the tables that it names, and conversion.md: what was taken, approximated, left out, and "
-        "what to fill in. "
+        "what to fill in. Of mooring lines alone, mooring.yaml in place of platform.yaml. "
         "A folder that is not empty is refused. Exit status: 0 done; 2 the input is wrong, and nothing was written.",
     )
 )

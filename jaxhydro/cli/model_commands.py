@@ -135,21 +135,29 @@ def convert(
     source: Annotated[
         Path,
         typer.Argument(
-            help="OpenFAST's main file (.fst), a RAFT design (.yaml), or results of WAMIT, HAMS, Nemoh or Capytaine: a folder.",
+            help=(
+                "OpenFAST's main file (.fst), a RAFT design (.yaml), results of WAMIT, HAMS, Nemoh or Capytaine (a folder), "
+                "or mooring lines: a MoorDyn file (.dat, .txt) or a MoorPy system (.yaml)."
+            ),
             metavar="SOURCE",
         ),
     ],
     out: Annotated[Path, typer.Option("--out", help="A new or an empty folder.")],
+    mooring: Annotated[
+        Path | None,
+        typer.Option("--mooring", help="MoorDyn file or MoorPy system with the mooring lines, where SOURCE has none."),
+    ] = None,
 ) -> None:
     """Make platform.yaml of another program's model, with a page that says what became of each item of it.
 
     Of an OpenFAST deck: mass (ElastoDyn), members, coefficients, ballast and potential flow (HydroDyn), moorings (MoorDyn),
     water. Of a RAFT design: members, masses of shell and ballast, turbine, moorings, water. Of panel programs: tables, water,
-    and the mass where it is known; what has to be filled in by hand is marked.
+    and the mass where it is known; what has to be filled in by hand is marked. Of mooring lines alone: mooring.yaml, with the
+    section `mooring` to paste.
     """
     from jaxhydro.cli.convert_command import convert_model
 
-    convert_model(source, out)
+    convert_model(source, out, mooring)
 
 
 def export(

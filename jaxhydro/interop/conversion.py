@@ -42,8 +42,10 @@ class Conversion:
         platform: Contents of `platform.yaml`, as plain dictionaries, lists, numbers and words.
         items: What became of each item of the source.
         files: Files that `platform.yaml` refers to: name beside it -> file to copy.
+        whole: Whether `platform` is a whole platform file. Else it is its sections `water` and `mooring` alone.
     """
 
     platform: dict[str, Any]
     items: tuple[ConvertedItem, ...]
     files: Mapping[str, Path] = field(default_factory=dict)
+    whole: bool = True

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
+ON_BED = 1e-4  # of the water depth: how far from the sea bed a fixed point is on it
+
 
 class Attachment(StrEnum):
     """What a point is fixed to."""
@@ -26,6 +28,7 @@ class MooringPoint:
         position: From the origin at still water, the platform at its reference position, m.
         mass: kg.
         volume: m3.
+        row: Line of the file that states it, from 1, or None.
     """
 
     name: str
@@ -33,6 +36,7 @@ class MooringPoint:
     position: tuple[float, float, float]
     mass: float = 0.0
     volume: float = 0.0
+    row: int | None = None
 
 
 @dataclass(frozen=True)
@@ -44,12 +48,14 @@ class LineType:
         diameter: Of the displaced volume, m.
         mass_per_length: In air, kg/m.
         axial_stiffness: EA, N.
+        row: Line of the file that states it, from 1, or None.
     """
 
     name: str
     diameter: float
     mass_per_length: float
     axial_stiffness: float
+    row: int | None = None
 
     def weight_in_water(self, density: float, gravity: float) -> float:
         """Weight less buoyancy, N/m, in water of a density (kg/m³) and gravity (m/s²)."""
@@ -65,12 +71,14 @@ class MooringLine:
         ends: Names of its two points.
         length: Unstretched, m.
         line_type: Name of its type.
+        row: Line of the file that states it, from 1, or None.
     """
 
     name: str
     ends: tuple[str, str]
     length: float
     line_type: str
+    row: int | None = None
 
 
 @dataclass(frozen=True)
@@ -91,7 +99,15 @@ class MooringSystem:
 
 
 class NoCatenaries(Exception):
-    """A mooring that the platform file cannot have as catenaries; the text says why."""
+    """A mooring that the platform file cannot have as catenaries; the text says why.
+
+    Attributes:
+        row: Line of the file at which it is so, from 1, or None.
+    """
+
+    def __init__(self, reason: str, row: int | None = None) -> None:
+        super().__init__(reason)
+        self.row = row
 
 
 def catenary_section(system: MooringSystem, depth: float, density: float, gravity: float) -> dict[str, Any]:
@@ -120,12 +136,13 @@ def catenary_section(system: MooringSystem, depth: float, density: float, gravit
             used |= dict.fromkeys(segment["type"] for segment in segments)
             rows.append({"anchor": [*anchor.position], "fairlead": [*fairlead.position], "segments": segments})
     if remaining:
-        raise NoCatenaries(f"line {next(iter(remaining))} does not run from the ground to the platform")
+        line = next(iter(remaining.values()))
+        raise NoCatenaries(f"line {line.name} does not run from the ground to the platform", line.row)
     types = {}
     for name in used:
         kind = system.line_types[name]
         if (weight := kind.weight_in_water(density, gravity)) <= 0.0:
-            raise NoCatenaries(f"lines of type {name} float: {weight:.4g} N/m in water")
+            raise NoCatenaries(f"lines of type {name} float: {weight:.4g} N/m in water", kind.row)
         of_volume = {"mass_per_length": kind.mass_per_length, "diameter": kind.diameter}
         types[name] = {"axial_stiffness": kind.axial_stiffness} | (of_volume if kind.diameter else {"submerged_weight": weight})
     section = {"kind": "catenary", "line_types": types, "lines": rows}
@@ -142,9 +159,10 @@ def _path(
     Raises:
         NoCatenaries: It does not end on the platform, or a point between two lines has a mass or a volume.
     """
-    point, segments = anchor, []
+    point, segments, row = anchor, list[dict[str, Any]](), None
     while line := next((line for line in remaining.values() if point.name in line.ends), None):
         del remaining[line.name]
+        row = line.row
         segments.append({"type": line.line_type, "length": line.length})
         point = system.points[line.ends[1] if line.ends[0] == point.name else line.ends[0]]
         if point.attachment is Attachment.PLATFORM:
@@ -153,7 +171,7 @@ def _path(
         if point.attachment is not Attachment.FREE or meeting != 2:
             break
         if point.mass or point.volume:
-            raise NoCatenaries(f"point {point.name} between two lines has a mass or a volume")
+            raise NoCatenaries(f"point {point.name} between two lines has a mass or a volume", point.row)
     if not segments:
         return None
-    raise NoCatenaries(f"the line from point {anchor.name} ends at point {point.name}, which is not on the platform")
+    raise NoCatenaries(f"the line from point {anchor.name} ends at point {point.name}, which is not on the platform", row)

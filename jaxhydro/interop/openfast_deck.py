@@ -18,6 +18,7 @@ from jaxhydro.interop.openfast.deck_files import DeckFiles, WaterColumn, module_
 from jaxhydro.interop.openfast.deck_sea import sea_items
 from jaxhydro.interop.openfast.elastodyn import read_parts
 from jaxhydro.interop.openfast.hull_tables import read_fill_groups, read_joints, read_members
+from jaxhydro.interop.openfast.key_items import key_items
 from jaxhydro.interop.openfast.keyed_file import KeyedFile
 from jaxhydro.interop.openfast.mass_parts import tidy
 from jaxhydro.interop.openfast.moordyn_file import read_mooring_system
@@ -64,7 +65,7 @@ def read_openfast_deck(path: str | PathLike[str]) -> Conversion:
         current, current_items = read_current(deck.waves, water.depth)
         platform["water"] |= {"current": current} if current else {}
         items += [*sea_items(deck.waves), *current_items]
-    items += [item for file in deck.all() for item in _of_version(file)]
+    items += [item for file in deck.all() for item in key_items(file)]
     return Conversion(platform, tuple(items), flow.files)
 
 
@@ -175,16 +176,3 @@ def _waves_at(file: KeyedFile, strips: bool, excitation: bool, items: list[Conve
     else:
         items.append(ConvertedItem(f"{file.name}: {', '.join(modes)}", Treatment.TAKEN, text))
     return {"waves_at": places[0]}
-
-
-def _of_version(file: KeyedFile) -> list[ConvertedItem]:
-    """Keys that this version of a file has not, and those that were not used."""
-    items = []
-    if file.absent:
-        listed = ", ".join(f"{key} ({value or 'nothing'})" for key, value in file.absent.items())
-        text = f"This version of the file has no such key. Taken instead: {listed}."
-        items.append(ConvertedItem(f"{file.name}: keys of other versions", Treatment.APPROXIMATED, text))
-    if unused := file.unused():
-        text = f"Not used: {', '.join(unused)}."
-        items.append(ConvertedItem(f"{file.name}: other keys", Treatment.LEFT_OUT, text))
-    return items

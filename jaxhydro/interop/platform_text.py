@@ -12,6 +12,12 @@ HEADINGS = {
     Treatment.APPROXIMATED: "Approximated",
     Treatment.LEFT_OUT: "Left out",
 }
+_LINES_HEAD = """\
+# Made by `jaxhydro convert` from {source}.
+# Sections of a platform file: paste `mooring` into it. `water` is that of the lines; the platform file has its own.
+# conversion.md says what was taken, what was approximated and what was left out. All keys: docs/formats.md.
+# SI units. x, y horizontal, z up from still water. Fairleads are from the platform's reference point.
+"""
 _HEAD = """\
 # Made by `jaxhydro convert` from {source}.
 # conversion.md says what was taken, what was approximated and what was left out. All keys: docs/formats.md.
@@ -20,7 +26,7 @@ _HEAD = """\
 
 
 def platform_text(conversion: Conversion, source: str) -> str:
-    """Text of the platform file of a conversion.
+    """Text of the platform file of a conversion, or of the sections of one.
 
     Args:
         conversion: The conversion.
@@ -29,17 +35,19 @@ def platform_text(conversion: Conversion, source: str) -> str:
     missing = [item for item in conversion.items if item.treatment is Treatment.TO_FILL_IN]
     lines = [f"#   {item.source}: {' '.join(item.meaning.split())}\n" for item in missing]
     told = "# To be filled in by hand:\n" + "".join(lines) if lines else ""
-    return _HEAD.format(source=" ".join(source.split())) + told + yaml_text(conversion.platform)
+    head = _HEAD if conversion.whole else _LINES_HEAD
+    return head.format(source=" ".join(source.split())) + told + yaml_text(conversion.platform)
 
 
-def conversion_page(conversion: Conversion, source: str) -> str:
+def conversion_page(conversion: Conversion, source: str, name: str = "platform.yaml") -> str:
     """Page that says what became of each item of a source, in Markdown.
 
     Args:
         conversion: The conversion.
         source: Name of what was converted.
+        name: Name of the file that was made of it.
     """
-    return items_page(f"{source} as platform.yaml", conversion.items, conversion.files)
+    return items_page(f"{source} as {name}", conversion.items, conversion.files)
 
 
 def items_page(title: str, items: Sequence[ConvertedItem], files: Mapping[str, Path]) -> str:

@@ -31,6 +31,8 @@ class _Point(Schema):
     name: Name
     type: Annotated[Attachment, BeforeValidator(_attachment)]
     location: Vector
+    mass: NonNegative = 0.0
+    volume: NonNegative = 0.0
 
 
 class _LineType(Schema):
@@ -87,7 +89,7 @@ class MooringSection(Consistent):
         Where the section has another density, the mass of lines is that which gives the same weight in this water.
         """
         less = (self.rho or self.water_density or density) - density
-        points = {p.name: MooringPoint(p.name, p.type, p.location) for p in self.points}
+        points = {p.name: MooringPoint(p.name, p.type, p.location, p.mass, p.volume) for p in self.points}
         types = {
             t.name: LineType(t.name, t.diameter, t.mass_density - less * math.pi / 4 * t.diameter**2, t.stiffness)
             for t in self.line_types

@@ -13,6 +13,7 @@ from test_cli import run
 
 import jaxhydro as jh
 from jaxhydro.dynamics.response import decay_cycles
+from jaxhydro.input_schema import read_yaml
 from jaxhydro.interop.openfast_deck import read_openfast_deck
 from jaxhydro.loads import CatenaryLines
 from jaxhydro.platform.catenary_build import catenary_lines
@@ -93,6 +94,44 @@ def test_broken_results_write_nothing(tmp_path: Path) -> None:
     told = run("convert", folder, "--out", tmp_path / "new", status=2)
     assert "Ellipsoid: expected results/RadiationCoefficients.tec or results/ExcitationForce.tec, found neither" in told
     assert sorted(path.name for path in tmp_path.iterdir()) == ["Ellipsoid"]
+
+
+def test_mooring_lines_alone(tmp_path: Path) -> None:
+    """mooring.yaml has the section of the deck's platform, its water, and the tensions are told."""
+    text = run("convert", DECK / "moordyn.dat", "--out", tmp_path / "new")
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == ["conversion.md", "mooring.yaml"]
+    written = read_yaml(tmp_path / "new" / "mooring.yaml")
+    assert written["mooring"] == read_openfast_deck(DECK / "main.fst").platform["mooring"] and written["water"]["depth"] == 80.0
+    assert "tension at the fairleads in the reference position (kN): " in text and "Paste `mooring` of" in text
+    page = (tmp_path / "new" / "conversion.md").read_text(encoding="utf-8")
+    assert "# moordyn.dat as mooring.yaml" in page and "80 m is assumed" in page
+
+
+def test_mooring_lines_of_a_platform_without(tmp_path: Path) -> None:
+    """What asked for a mooring is gone, and the platform is held in surge."""
+    text = run("convert", ELLIPSOID, "--mooring", DECK / "moordyn.dat", "--out", tmp_path / "new")
+    platform = load_platform(tmp_path / "new" / "platform.yaml")
+    assert isinstance(platform.mooring, Catenary) and platform.mooring.seabed.depth == 80.0
+    assert "fill in: mooring" not in text and "tension at the fairleads" in text
+    assert "warning: moordyn.dat: sea bed" in text  # tables of deep water, lines in 80 m
+    page = (tmp_path / "new" / "conversion.md").read_text(encoding="utf-8")
+    assert "moordyn.dat: lines 1, 2" in page and "| mooring |" not in page
+
+
+def test_mooring_lines_that_do_not_fit_write_nothing(tmp_path: Path) -> None:
+    lines, new = DECK / "moordyn.dat", tmp_path / "new"
+    told = run("convert", DECK / "main.fst", "--mooring", lines, "--out", new, status=2)
+    assert "a source without a mooring, found a mooring of kind catenary" in told
+    assert "a platform beside --mooring" in run("convert", lines, "--mooring", lines, "--out", new, status=2)
+    assert "found a folder" in run("convert", ELLIPSOID, "--mooring", DECK, "--out", new, status=2)
+    assert "no such file" in run("convert", ELLIPSOID, "--mooring", tmp_path / "a.dat", "--out", new, status=2)
+    text = lines.read_text(encoding="utf-8")
+    (tmp_path / "short.dat").write_text(text.replace("225.0", "100.0"), encoding="utf-8")
+    told = run("convert", tmp_path / "short.dat", "--out", new, status=2)
+    assert "short.dat, as mooring.yaml: 2 problems" in told and "the fairlead is " in told
+    assert not new.exists() and [path.name for path in tmp_path.iterdir()] == ["short.dat"]
+    shutil.copy(lines, tmp_path / "lines.txt")
+    assert "found lines.txt, short.dat. Name the file in it." in run("convert", tmp_path, "--out", new, status=2)
 
 
 @with_reference

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.conversion import Conversion
+from jaxhydro.interop.mooring_file import is_mooring_text
 from jaxhydro.interop.panel_results.capytaine_file import read_capytaine_file
 from jaxhydro.interop.panel_results.hams_folder import control_file, read_hams_folder
 from jaxhydro.interop.panel_results.nemoh_folder import case_file, read_nemoh_folder
@@ -12,6 +13,7 @@ from jaxhydro.interop.panel_results.wamit_folder import read_wamit_folder
 
 TABLES = (".1", ".3", ".hst", ".12d")  # of WAMIT and HAMS
 MODELS = (".fst", ".yaml", ".yml")  # of other programs, which are named as files
+TEXTS = (".dat", ".txt")  # may be MoorDyn's, which is named as a file
 EXPECTED = "results of WAMIT (.1, .3), HAMS (ControlFile.in), Nemoh (Nemoh.cal) or Capytaine (.nc)"
 
 
@@ -38,6 +40,7 @@ def read_results_folder(folder: Path) -> Conversion:
         found = ", ".join(path.name for path in datasets)
         raise InputError(str(folder), [Problem("", "one dataset of Capytaine", found, "Name the file in it.")])
     models = [path.name for path in files if path.suffix.lower() in MODELS]
+    models = models or [path.name for path in files if path.suffix.lower() in TEXTS and is_mooring_text(path)]
     hint = "Name the file in it." if models else ""
     raise InputError(str(folder), [Problem("", EXPECTED, ", ".join(models) or "none of their files", hint)])
 
