@@ -1,6 +1,6 @@
 """Reader of files that hold mooring lines alone: MoorDyn's text, and MoorPy's YAML."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -102,7 +102,11 @@ def _positive(file: KeyedFile, keys: tuple[str, ...]) -> float | None:
 def _of_moorpy(path: Path) -> MooringFile:
     data = read_yaml(path)
     if not is_mooring_yaml(data):
-        hint = "The mooring of a RAFT design is read with the design." if "mooring" in data else ""
+        hint = ""
+        if "mooring" in data:
+            hint = (
+                "A RAFT design is a source of its own." if "platform" in data else "Paste its `mooring` into the platform file."
+            )
         found = f"the keys {', '.join(map(str, data))}" if data else "an empty file"
         raise InputError(str(path), [Problem("", "a MoorPy system with points, lines and line_types", found, hint)])
     section = validate(MooringSection, data, str(path))
@@ -111,4 +115,12 @@ def _of_moorpy(path: Path) -> MooringFile:
         raise InputError(str(path), [Problem("water_depth", "a depth, or a fixed point under water", "neither")])
     density = section.rho or section.water_density
     system = section.system(max(ground, default=0.0), density or DENSITY)
-    return MooringFile(path, system, density, None, section.water_depth is not None, ())
+    return MooringFile(path, system, density, None, section.water_depth is not None, tuple(_other_keys(path, section)))
+
+
+def _other_keys(path: Path, section: MooringSection) -> Iterator[ConvertedItem]:
+    """Item of the keys of a MoorPy system that are not used."""
+    rows = (*section.points, *section.lines, *section.line_types)
+    unused = dict.fromkeys(key for part in (section, *rows) for key in part.model_extra or ())
+    if unused:
+        yield ConvertedItem(f"{path.name}: other keys", Treatment.LEFT_OUT, f"Not used: {', '.join(map(str, unused))}.")

@@ -129,6 +129,10 @@ def _section(source: MooringFile, depth: float, density: float, gravity: float) 
     ]
     if spare := [kind for kind in system.line_types if kind not in used]:
         items.append(ConvertedItem(f"{name}: line types {', '.join(spare)}", Treatment.LEFT_OUT, "No line is of these types."))
+    held = {end for line in system.lines.values() for end in line.ends}
+    if idle := [point for point in system.points if point not in held]:
+        text = f"No line is at points {', '.join(idle)}."
+        items.append(ConvertedItem(f"{name}: points without a line", Treatment.LEFT_OUT, text, warning=True))
     if not source.depth_stated:
         text = f"The file states no depth: {system.depth:g} m is assumed, at which the deepest fixed point is on the sea bed."
         items.append(ConvertedItem(f"{name}: water depth", Treatment.APPROXIMATED, text))

@@ -212,7 +212,8 @@ class _Converter:
         section, site = self.design.mooring, self.design.site
         if self.mooring is None:
             if section and section.get("file"):
-                self.tell("mooring.file", LEFT_OUT, f"lines of another program's file, {shown(section['file'])}", warning=True)
+                meaning = f"lines of another program's file, {shown(section['file'])}; of a MoorDyn file give it by --mooring"
+                self.tell("mooring.file", LEFT_OUT, meaning, warning=True)
             return {}
         system = self.mooring.system(site.water_depth, site.rho_water)
         try:

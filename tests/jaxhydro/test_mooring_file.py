@@ -9,8 +9,9 @@ import pytest
 from one_program import one_program
 
 from jaxhydro.errors import InputError
-from jaxhydro.interop.conversion import Conversion, Treatment
+from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
 from jaxhydro.interop.converters import convert_file
+from jaxhydro.interop.mooring_source import with_mooring
 from jaxhydro.interop.openfast_deck import read_openfast_deck
 from jaxhydro.loads import CatenaryLines
 from jaxhydro.platform.catenary_build import catenary_lines
@@ -167,6 +168,40 @@ ID  Attachment  X0   Y0   Z0    r0  p0  y0  Mass  CG*  I*  Volume  CdA*  Ca*
         converted(tmp_path, text.replace("0   0   90", "0   5   90"))
 
 
+def test_a_body_whose_number_and_attachment_are_one_word(tmp_path: Path) -> None:
+    """As in OpenFAST's own tests of 2020; words of the header have commas."""
+    bodies = """\
+---------------------- BODIES --------------------------------------
+BodyID  X0 Y0 Z0 r0 p0 y0 Xcg Ycg Zcg M V IX IY IZ CdA-x,y,z Ca-x,y,z
+(-)     (m) (m) (m) (deg) (deg) (deg) (m) (m) (m) (kg) (m^3) (-) (-) (-) (m^2) (-)
+1coupled 0 0 0  0  0  0  0   0   0   0 0 0  0  0  0         0
+---------------------- POINTS --------------------------------------
+"""
+    text = changed("---------------------- POINTS --------------------------------------\n", bodies)
+    conversion = converted(tmp_path, text.replace("Coupled ", "Body1   "))
+    assert conversion.platform["mooring"] == converted(tmp_path, VERSION_2).platform["mooring"]
+
+
+def test_a_matrix_of_panel_results_is_replaced(tmp_path: Path) -> None:
+    """Not that of a source whose mooring is complete."""
+    (tmp_path / "lines.txt").write_text(VERSION_2, encoding="utf-8")
+    water = {"density": 1025.0, "depth": 80.0, "gravity": 9.80665}
+    items = [
+        ConvertedItem("external stiffness", Treatment.APPROXIMATED, "`mooring`: the stiffness."),
+        ConvertedItem("mooring", Treatment.TO_FILL_IN, "It is linear."),
+        ConvertedItem("water", Treatment.TAKEN, "Kept."),
+    ]
+    platform = {"water": water, "mooring": {"kind": "stiffness_matrix"}}
+    conversion = with_mooring(Conversion(platform, tuple(items)), tmp_path / "lines.txt", "hull.out")
+    assert conversion.platform["mooring"] == converted(tmp_path, VERSION_2).platform["mooring"]
+    assert said(conversion, "mooring", Treatment.TO_FILL_IN) == "" and said(conversion, "water", Treatment.TAKEN) == "Kept."
+    assert "is replaced by the lines of lines.txt" in said(conversion, "external stiffness", Treatment.LEFT_OUT)
+    assert said(conversion, "external stiffness", Treatment.APPROXIMATED) == ""
+    assert "1020 kg/m³ is left out" in said(conversion, "lines.txt: density", Treatment.LEFT_OUT)
+    with pytest.raises(InputError, match="a source without a mooring, found a mooring of kind stiffness_matrix"):
+        with_mooring(Conversion(platform, tuple(items[2:])), tmp_path / "lines.txt", "main.fst")
+
+
 def test_a_depth_that_is_not_stated_is_that_of_the_deepest_fixed_point(tmp_path: Path) -> None:
     conversion = converted(tmp_path, changed("80.0    WtrDpth   water depth (m)\n", ""))
     assert conversion.platform["water"]["depth"] == 80.0
@@ -177,6 +212,12 @@ def test_points_above_the_bed_are_warned_of(tmp_path: Path) -> None:
     conversion = converted(tmp_path, changed("80.0    WtrDpth", "90.0    WtrDpth"))
     (warning,) = [item for item in conversion.items if item.warning]
     assert "Fixed points 2, 4 are above the sea bed at 90 m" in warning.meaning
+
+
+def test_points_without_a_line_are_warned_of(tmp_path: Path) -> None:
+    conversion = converted(tmp_path, changed("2   chain     3        4        225.0     20       p\n", ""))
+    (warning,) = [item for item in conversion.items if item.warning]
+    assert warning.meaning == "No line is at points 3, 4." and len(conversion.platform["mooring"]["lines"]) == 1
 
 
 def test_the_static_stiffness_of_several_is_taken(tmp_path: Path) -> None:
@@ -265,6 +306,11 @@ def section_without(title: str) -> str:
             changed("EA     BA/-zeta", "EA     CB"),
             "line 4: expected MoorDyn's columns of LINE TYPES, found CB, a column of MAP++",
         ),
+        (
+            changed("(#) (name)    (#)      (#)      (m)       (-)      (-)\n", ""),
+            "line 17: expected a row of units under the header",
+        ),
+        (changed("2   NLines", "3   NLines", VERSION_1), "line 17: expected the number of rows of LINES, 2, found 3"),
         (VERSION_2[: VERSION_2.index("TypeName")], "expected the header of LINE TYPES with a column name, found nothing"),
         ("", "found an empty file"),
         ("title\nvalues\n", "a MoorDyn file (.dat, .txt)"),
@@ -301,6 +347,21 @@ def test_broken_systems_of_moorpy(tmp_path: Path, old: str, new: str, message: s
     with pytest.raises(InputError) as error:
         converted(tmp_path, changed(old, new, MOORPY), "system.yaml")
     assert message in str(error.value)
+
+
+def test_keys_of_moorpy_that_are_not_used_are_told(tmp_path: Path) -> None:
+    text = changed("stiffness: 1.0e8}", "stiffness: 1.0e8, breaking_load: 1.0e6}", MOORPY)
+    assert said(converted(tmp_path, text, "a.yml"), "other keys", Treatment.LEFT_OUT) == "Not used: breaking_load."
+
+
+def test_other_yaml_files_are_no_lines(tmp_path: Path) -> None:
+    """The section that convert wrote is for the platform file; a RAFT design is a source."""
+    (tmp_path / "mooring.yaml").write_text("water: {depth: 80}\nmooring: {kind: catenary}\n", encoding="utf-8")
+    empty = Conversion({"water": {"density": 1025.0, "depth": 80.0, "gravity": 9.81}}, ())
+    with pytest.raises(InputError, match=r"found the keys water, mooring\. Paste its `mooring` into the platform file"):
+        with_mooring(empty, tmp_path / "mooring.yaml", "results")
+    with pytest.raises(InputError, match="A RAFT design is a source of its own"):
+        with_mooring(empty, DECK.parent / "raft_design.yaml", "results")
 
 
 def test_a_mass_between_lines_of_moorpy_is_refused(tmp_path: Path) -> None:

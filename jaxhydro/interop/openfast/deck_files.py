@@ -126,6 +126,6 @@ def module_items(main: KeyedFile) -> list[ConvertedItem]:
         meaning = "SubDyn's beams are left out, with their mass: the platform is rigid. Add their mass to `rigid_body`."
         items.append(ConvertedItem(f"{main.name}: CompSub", Treatment.LEFT_OUT, meaning))
     if (kind := main.whole("CompMooring")) in OTHER_MOORINGS:
-        meaning = f"Moorings of {OTHER_MOORINGS[kind]} are not read. Give `mooring` by hand."
+        meaning = f"Moorings of {OTHER_MOORINGS[kind]} are not read. Give `mooring` by hand, or a MoorDyn file by --mooring."
         items.append(ConvertedItem(f"{main.name}: CompMooring", Treatment.LEFT_OUT, meaning))
     return items

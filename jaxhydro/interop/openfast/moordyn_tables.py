@@ -65,6 +65,7 @@ BODIES = Section(
     ("Type",),
 )
 RODS = Section(("RODS", "ROD LIST", "ROD PROPERTIES"), {"ID": ("id", "rod", "rodid", "num")})
+MEASURED = ("Diam", "X", "Length")  # columns of numbers with a unit
 MAP_COLUMN = "cb"  # of MAP++'s line types: friction on the seabed; MoorDyn has none there
 
 
@@ -85,11 +86,12 @@ def section_rows(file: KeyedFile, section: Section) -> list[TableRow]:
     """
     if (start := _title(file, section)) is None:
         return []
-    header = start + 1
+    header, count = start + 1, None
     if len(file.words(header)) > 1 and math.isfinite(to_number(file.words(header)[0])):
-        header += 1  # version 1 has a count on top
+        header, count = header + 1, to_number(file.words(header)[0])  # version 1 has a count on top
     columns = _columns(file, section, header)
     needed = max(columns.values()) + 1
+    _check_units(file, header + 1, columns)
     rows = []
     file.use(range(start, header + 2))
     for index in range(header + 2, len(file.lines)):
@@ -104,6 +106,8 @@ def section_rows(file: KeyedFile, section: Section) -> list[TableRow]:
             expected = f"{needed} columns as in the header of {section.titles[0]} (line {header + 1})"
             raise file.wrong(index, expected, f"{len(words)}: {shown(' '.join(words))}")
         rows.append(TableRow(str(file.path), index + 1, {name: bare_word(words[i]) for name, i in columns.items()}))
+    if count is not None and count != len(rows):
+        raise file.wrong(header - 1, f"the number of rows of {section.titles[0]}, {len(rows)}", f"{count:g}")
     return rows
 
 
@@ -130,9 +134,17 @@ def _title(file: KeyedFile, section: Section) -> int | None:
     return None
 
 
+def _check_units(file: KeyedFile, index: int, columns: Mapping[str, int]) -> None:
+    """Refuse a row of numbers where the units stand: MoorDyn skips that line, and the row would be lost."""
+    words = dict(enumerate(file.lines[index].split() if index < len(file.lines) else ()))
+    measured = [words.get(columns[name], "") for name in MEASURED if name in columns]
+    if measured and all(math.isfinite(to_number(word)) for word in measured):
+        raise file.wrong(index, "a row of units under the header", shown(file.lines[index].strip()))
+
+
 def _columns(file: KeyedFile, section: Section, header: int) -> dict[str, int]:
     """Column of each name by the header of a section."""
-    names = [word.lower() for word in file.words(header)]
+    names = [word.lower() for word in (file.lines[header].split() if header < len(file.lines) else ())]
     if section is TYPES and MAP_COLUMN in names:
         raise file.wrong(header, "MoorDyn's columns of LINE TYPES", "CB, a column of MAP++", "Files of MAP++ are not read.")
     columns: dict[str, int] = {}
