@@ -37,11 +37,13 @@ def convert_file(path: Path, mooring: Path | None = None) -> Conversion:
     Raises:
         InputError: No program is known by the ending, or a file is missing or broken.
     """
-    conversion = _reader_of(path)(path)
     if mooring is None:
-        return conversion
-    add: Callable[[Conversion, Path, str], Conversion] = _function("mooring_source", "with_mooring")
-    return add(conversion, mooring, str(path))
+        return _reader_of(path)(path)
+    reader = _reader_of(path)  # a source that is missing is told first
+    lines = _function("mooring_file", "read_mooring_file")(mooring)
+    conversion = reader(path, lines.system.depth) if reader.__module__.endswith(RESULTS) else reader(path)
+    joined: Conversion = _function("mooring_source", "with_mooring")(conversion, lines, str(path))
+    return joined
 
 
 def readable() -> str:
@@ -53,7 +55,7 @@ def readable() -> str:
     return f"{', '.join(kinds)}, or a folder of results"
 
 
-def _reader_of(path: Path) -> Callable[[Path], Conversion]:
+def _reader_of(path: Path) -> Callable[..., Conversion]:
     if path.is_dir():
         return _function(RESULTS, "read_results_folder")
     suffix = path.suffix.lower()

@@ -71,16 +71,16 @@ def convert_mooring(path: Path) -> Conversion:
     return Conversion({"water": water, PLACE: section}, tuple(items), whole=False)
 
 
-def with_mooring(conversion: Conversion, path: Path, source: str) -> Conversion:
+def with_mooring(conversion: Conversion, file: MooringFile, source: str) -> Conversion:
     """A platform with the lines of another file.
 
     Args:
         conversion: The platform, which has no mooring of its own, or one that is to be filled in by hand.
-        path: A MoorDyn file, or a MoorPy system in YAML.
+        file: The lines.
         source: Name of the file that the platform is of, for messages.
 
     Raises:
-        InputError: The platform has a mooring, or the file cannot be used.
+        InputError: The platform has a mooring, or the lines cannot be catenaries from the sea bed to it.
     """
     if not conversion.whole:
         raise InputError(source, [Problem("", "a platform beside --mooring", "a file of mooring lines")])
@@ -89,7 +89,7 @@ def with_mooring(conversion: Conversion, path: Path, source: str) -> Conversion:
     if present["kind"] != "none" and not to_fill_in:
         found = f"a mooring of kind {present['kind']}"
         raise InputError(source, [Problem("--mooring", "a source without a mooring", found, "Leave out --mooring.")])
-    file, water = read_mooring_file(path), conversion.platform["water"]
+    path, water = file.path, conversion.platform["water"]
     section, items = _section(file, water["depth"], water["density"], water["gravity"])
     for key, stated, unit in (("density", file.density, "kg/m³"), ("gravity", file.gravity, "m/s²")):
         if stated is not None and stated != water[key]:

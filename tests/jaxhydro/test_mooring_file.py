@@ -11,6 +11,7 @@ from one_program import one_program
 from jaxhydro.errors import InputError
 from jaxhydro.interop.conversion import Conversion, ConvertedItem, Treatment
 from jaxhydro.interop.converters import convert_file
+from jaxhydro.interop.mooring_file import read_mooring_file
 from jaxhydro.interop.mooring_source import with_mooring
 from jaxhydro.interop.openfast_deck import read_openfast_deck
 from jaxhydro.loads import CatenaryLines
@@ -192,14 +193,25 @@ def test_a_matrix_of_panel_results_is_replaced(tmp_path: Path) -> None:
         ConvertedItem("water", Treatment.TAKEN, "Kept."),
     ]
     platform = {"water": water, "mooring": {"kind": "stiffness_matrix"}}
-    conversion = with_mooring(Conversion(platform, tuple(items)), tmp_path / "lines.txt", "hull.out")
+    conversion = with_mooring(Conversion(platform, tuple(items)), read_mooring_file(tmp_path / "lines.txt"), "hull.out")
     assert conversion.platform["mooring"] == converted(tmp_path, VERSION_2).platform["mooring"]
     assert said(conversion, "mooring", Treatment.TO_FILL_IN) == "" and said(conversion, "water", Treatment.TAKEN) == "Kept."
     assert "is replaced by the lines of lines.txt" in said(conversion, "external stiffness", Treatment.LEFT_OUT)
     assert said(conversion, "external stiffness", Treatment.APPROXIMATED) == ""
     assert "1020 kg/m³ is left out" in said(conversion, "lines.txt: density", Treatment.LEFT_OUT)
     with pytest.raises(InputError, match="a source without a mooring, found a mooring of kind stiffness_matrix"):
-        with_mooring(Conversion(platform, tuple(items[2:])), tmp_path / "lines.txt", "main.fst")
+        with_mooring(Conversion(platform, tuple(items[2:])), read_mooring_file(tmp_path / "lines.txt"), "main.fst")
+
+
+def test_panel_results_without_a_depth_take_that_of_the_lines(tmp_path: Path) -> None:
+    """With a depth the longest wave's force tells the displaced mass, that of the ellipsoid."""
+    (tmp_path / "lines.txt").write_text(VERSION_2, encoding="utf-8")
+    results = DECK.parents[1] / "data" / "ellipsoid" / "wamit"
+    alone, conversion = convert_file(results), convert_file(results, tmp_path / "lines.txt")
+    assert alone.platform["water"]["depth"] > 500.0 and conversion.platform["water"]["depth"] == 80.0
+    assert said(conversion, "water.depth", Treatment.TO_FILL_IN).endswith("80 m is taken, the depth of the mooring lines.")
+    assert "longest wave" in said(conversion, "rigid_body.mass", Treatment.TO_FILL_IN)
+    assert "seabed" not in conversion.platform["mooring"] and not any("sea bed" in item.source for item in conversion.items)
 
 
 def test_a_depth_that_is_not_stated_is_that_of_the_deepest_fixed_point(tmp_path: Path) -> None:
@@ -357,11 +369,10 @@ def test_keys_of_moorpy_that_are_not_used_are_told(tmp_path: Path) -> None:
 def test_other_yaml_files_are_no_lines(tmp_path: Path) -> None:
     """The section that convert wrote is for the platform file; a RAFT design is a source."""
     (tmp_path / "mooring.yaml").write_text("water: {depth: 80}\nmooring: {kind: catenary}\n", encoding="utf-8")
-    empty = Conversion({"water": {"density": 1025.0, "depth": 80.0, "gravity": 9.81}}, ())
     with pytest.raises(InputError, match=r"found the keys water, mooring\. Paste its `mooring` into the platform file"):
-        with_mooring(empty, tmp_path / "mooring.yaml", "results")
+        read_mooring_file(tmp_path / "mooring.yaml")
     with pytest.raises(InputError, match="A RAFT design is a source of its own"):
-        with_mooring(empty, DECK.parent / "raft_design.yaml", "results")
+        read_mooring_file(DECK.parent / "raft_design.yaml")
 
 
 def test_a_mass_between_lines_of_moorpy_is_refused(tmp_path: Path) -> None:

@@ -21,15 +21,20 @@ LEAST_SIZE = 0.01  # of the largest motion's own square root, with which roundin
 MIN_SHARE = 1e-6  # of two motions' own, below which a coupling is rounding
 
 
-def platform_skeleton(case: PanelCase) -> Conversion:
+def platform_skeleton(case: PanelCase, depth: float | None = None) -> Conversion:
     """Conversion of a case: tables and water, estimates of mass, and what to fill in.
 
     Args:
         case: The case.
+        depth: Of the water where the case states none, m: that of the mooring lines. None: it is assumed.
 
     Raises:
         InputError: Nothing tells the mass, or no state space follows the damping.
     """
+    if case.depth is None and depth is not None:
+        case.depth = depth
+        text = f"Results do not say it: {depth:g} m is taken, the depth of the mooring lines."
+        case.say("water.depth", Treatment.TO_FILL_IN, text)
     platform: dict[str, Any] = {"name": case.name, "water": _water(case)}
     platform["rigid_body"] = _rigid_body(case)
     platform |= _matrices(case)

@@ -17,25 +17,26 @@ TEXTS = (".dat", ".txt")  # may be MoorDyn's, which is named as a file
 EXPECTED = "results of WAMIT (.1, .3), HAMS (ControlFile.in), Nemoh (Nemoh.cal) or Capytaine (.nc)"
 
 
-def read_results_folder(folder: Path) -> Conversion:
+def read_results_folder(folder: Path, depth: float | None = None) -> Conversion:
     """Platform of a folder of results.
 
     Args:
         folder: The folder.
+        depth: Of the water where the results state none, m, or None.
 
     Raises:
         InputError: It holds no results, or several datasets, or they cannot be used.
     """
     files = [path for path in sorted(folder.iterdir()) if path.is_file()]
     if case_file(folder) or (folder.name.lower() == "results" and case_file(folder.parent)):
-        return platform_skeleton(read_nemoh_folder(folder))
+        return platform_skeleton(read_nemoh_folder(folder), depth)
     if control_file(folder):
-        return platform_skeleton(read_hams_folder(folder))
+        return platform_skeleton(read_hams_folder(folder), depth)
     if any(path.suffix.lower() in TABLES for path in files):
-        return platform_skeleton(read_wamit_folder(folder))
+        return platform_skeleton(read_wamit_folder(folder), depth)
     datasets = [path for path in files if path.suffix.lower() == ".nc"]
     if len(datasets) == 1:
-        return platform_skeleton(read_capytaine_file(datasets[0]))
+        return platform_skeleton(read_capytaine_file(datasets[0]), depth)
     if datasets:
         found = ", ".join(path.name for path in datasets)
         raise InputError(str(folder), [Problem("", "one dataset of Capytaine", found, "Name the file in it.")])
@@ -45,38 +46,41 @@ def read_results_folder(folder: Path) -> Conversion:
     raise InputError(str(folder), [Problem("", EXPECTED, ", ".join(models) or "none of their files", hint)])
 
 
-def read_table(path: Path) -> Conversion:
+def read_table(path: Path, depth: float | None = None) -> Conversion:
     """Platform of the tables that share a file's name, in WAMIT's formats.
 
     Args:
         path: One of the tables.
+        depth: Of the water where the results state none, m, or None.
 
     Raises:
         InputError: They cannot be used.
     """
     read = read_hams_folder if control_file(path.parent) else read_wamit_folder
-    return platform_skeleton(read(path.parent, path.stem))
+    return platform_skeleton(read(path.parent, path.stem), depth)
 
 
-def read_nemoh_file(path: Path) -> Conversion:
+def read_nemoh_file(path: Path, depth: float | None = None) -> Conversion:
     """Platform of the case of a Nemoh.cal.
 
     Args:
         path: Nemoh.cal.
+        depth: Of the water where the results state none, m, or None.
 
     Raises:
         InputError: It cannot be used.
     """
-    return platform_skeleton(read_nemoh_folder(path.parent))
+    return platform_skeleton(read_nemoh_folder(path.parent), depth)
 
 
-def read_dataset(path: Path) -> Conversion:
+def read_dataset(path: Path, depth: float | None = None) -> Conversion:
     """Platform of a dataset of Capytaine.
 
     Args:
         path: The dataset.
+        depth: Of the water where the results state none, m, or None.
 
     Raises:
         InputError: It cannot be used.
     """
-    return platform_skeleton(read_capytaine_file(path))
+    return platform_skeleton(read_capytaine_file(path), depth)
