@@ -107,6 +107,7 @@ def said(conversion: Conversion, source: str, treatment: Treatment) -> str:
         (VERSION_2, "lines.txt"),
         (VERSION_1, "MoorDyn.DAT"),
         (VERSION_2, "lines"),
+        (VERSION_2.replace(" -80.0 ", " seabed "), "lines.dat"),
         (VERSION_2.replace("AttachA  AttachB", "NodeA  NodeB"), "a.dat"),
         (VERSION_2.replace("2        1        225.0", "Point2   P1       225.0"), "a.dat"),
         (VERSION_2.replace("- LINE TYPES -", "- LINE TYPES studless chain -"), "a.dat"),
@@ -279,6 +280,10 @@ def section_without(title: str) -> str:
         (changed("225.0", "-225.0"), "line 18: expected an unstretched length > 0, found -225"),
         (changed("-220.0", "-22O.0"), "line 11: expected a number for X, found '-22O.0'"),
         (changed("-220.0", "-220,0"), "line 11: expected a number for X, found '-220,0'"),
+        (
+            changed("80.0    WtrDpth", "80.0 dtIC").replace("-80.0", "seabed"),
+            "line 11: expected a number for Z, as the file states no",
+        ),
         (changed("-220.0", "nan"), "line 11: expected a number for X, found 'nan'"),
         (changed("60.0    1.0E8", "60.0    1.0E8N"), "line 6: expected a number for EA, found '1.0E8N'"),
         (changed("60.0    1.0E8", "60.0    rope.txt"), "found 'rope.txt'. For a rope with a table see `kind: tension_table`"),

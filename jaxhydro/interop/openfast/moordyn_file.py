@@ -28,6 +28,7 @@ ATTACHMENTS = {
 }
 ATTACHMENT_WORDS = "Fixed, Vessel, Coupled, Free, Connect, or Body and its number"
 DEPTH_KEYS = ("WtrDpth", "WtrDepth", "depth")
+ON_BED_WORD = "seabed"  # in place of a height
 MAX_DEPTH = 11_000.0  # m, of the deepest sea
 _ON_BODY = re.compile(r"body(\d+)\w*", re.IGNORECASE)
 _ON_TURBINE = re.compile(r"(turbine|t)(\d+)", re.IGNORECASE)
@@ -56,7 +57,9 @@ def read_mooring_system(
     bodies, rods = section_rows(file, BODIES), section_rows(file, RODS)
     items: list[ConvertedItem] = []
     types = {name: _line_type(row, file.name, items) for name, row in rows_by_id(sections["LINE TYPES"], "Name").items()}
-    point_rows, numbered = rows_by_id(sections["POINTS"]), _by_number(bodies)
+    stated = _stated_depth(file)
+    point_rows = {name: _with_height(row, stated) for name, row in rows_by_id(sections["POINTS"]).items()}
+    numbered = _by_number(bodies)
     points = {name: _point(row, level, numbered) for name, row in point_rows.items()}
     lines = {name: _line(row, points, types) for name, row in rows_by_id(sections["LINES"]).items()}
     if bodies:
@@ -64,7 +67,7 @@ def read_mooring_system(
         items.append(ConvertedItem(f"{file.name}: BODIES", Treatment.LEFT_OUT, text))
     if rods:
         items.append(ConvertedItem(f"{file.name}: RODS", Treatment.LEFT_OUT, "MoorDyn's rods have no counterpart."))
-    bed = _depth(file, level, depth, points)
+    bed = _depth(file, depth, points) if stated is None else stated + level
     for name, point in points.items():
         if point.attachment is Attachment.GROUND and point.position[2] < -bed * (1 + ON_BED):
             raise point_rows[name].wrong(
@@ -78,21 +81,36 @@ def stated_depth(file: KeyedFile) -> str | None:
     return next((key for key in DEPTH_KEYS if file.has(key)), None)
 
 
-def _depth(file: KeyedFile, level: float, depth: float | None, points: Mapping[str, MooringPoint]) -> float:
-    """Depth of the bed below still water, m."""
-    if (key := stated_depth(file)) is not None:
-        if not math.isfinite(to_number(file.word(key))):
-            hint = "Files of a sea bed that is not level are not read."
-            raise file.wrong(file.line_of(key), "a depth in m", shown(file.word(key)), hint, key=key)
-        depth = file.number(key) + level
-        if not 0.0 < depth <= MAX_DEPTH:
-            raise file.wrong(file.line_of(key), f"a depth of more than 0 and at most {MAX_DEPTH:g} m", f"{depth:g}", key=key)
+def _stated_depth(file: KeyedFile) -> float | None:
+    """Depth of the bed that a file states, m, below the level from which its heights count; None where it states none."""
+    if (key := stated_depth(file)) is None:
+        return None
+    if not math.isfinite(to_number(file.word(key))):
+        hint = "Files of a sea bed that is not level are not read."
+        raise file.wrong(file.line_of(key), "a depth in m", shown(file.word(key)), hint, key=key)
+    depth = file.number(key)
+    if not 0.0 < depth <= MAX_DEPTH:
+        raise file.wrong(file.line_of(key), f"a depth of more than 0 and at most {MAX_DEPTH:g} m", f"{depth:g}", key=key)
+    return depth
+
+
+def _depth(file: KeyedFile, depth: float | None, points: Mapping[str, MooringPoint]) -> float:
+    """Depth of the bed below still water, m, where the file states none: `depth`, or that of the deepest fixed point."""
     if depth is None:
         fixed = [point.position[2] for point in points.values() if point.attachment is Attachment.GROUND]
         if not fixed or min(fixed) >= 0.0:
             raise file.wrong(None, f"a water depth ({DEPTH_KEYS[0]}), or a fixed point under water", "neither")
         depth = -min(fixed)
     return depth
+
+
+def _with_height(row: TableRow, depth: float | None) -> TableRow:
+    """A point whose height is a number: MoorPy takes the word seabed as well."""
+    if row.cells["Z"].lower() != ON_BED_WORD:
+        return row
+    if depth is None:
+        raise row.wrong("a number for Z, as the file states no water depth", shown(row.cells["Z"]))
+    return TableRow(row.source, row.line, {**row.cells, "Z": f"{-depth!r}"})
 
 
 def _line_type(row: TableRow, name: str, items: list[ConvertedItem]) -> LineType:
