@@ -100,7 +100,7 @@ def _of_sea(study: Study, record: SeaRecord, cut: FourierRows, point: Point, res
     shape = (len(record.tests), len(record.dofs), -1, 2)
     floor = study.floor.ravel()[study.cell[rows]].reshape(shape)[..., 0]
     pool = (study.pool[rows] % study.dof.shape[1]).reshape(shape)[0, 0, :, 0]
-    duration = record.measured.shape[-1] * float(record.times[1] - record.times[0])
+    duration = record.duration
     stiffness = impedance(record, point.x, cut.take[: len(pool)] / duration)
     expected = [
         expected_over_floor(lines, mine, pool, stiffness) for lines, mine in zip(residual.reshape(shape) @ [1, 1j], floor)

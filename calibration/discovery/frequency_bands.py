@@ -106,6 +106,10 @@ class FourierRows(NamedTuple):
         taper /= np.sqrt(np.mean(taper**2))
         return cls(len(cuts), series * lines + line, scale, np.repeat(series, 2), np.repeat(band, 2), lines, taper)
 
+    def frequencies(self, duration: float | np.ndarray) -> np.ndarray:
+        """Frequency (Hz) of every pair of rows (l,), for series of some duration (s; one, or one each)."""
+        return self.take % self.lines / np.broadcast_to(duration, self.members)[self.take // self.lines]
+
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """Rows (2l, ...) of time series (s, t, ...)."""
         taper = self.taper.reshape(1, -1, *[1] * (values.ndim - 2))

@@ -132,6 +132,7 @@ def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.
         own_width=own_width,
         cuts=tuple(cuts),
         expected=None,
+        baseline=None,
     ), np.array(numbers)
 
 

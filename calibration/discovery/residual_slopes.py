@@ -83,6 +83,11 @@ class SeaRecord(eqx.Module):
     tests: tuple[str, ...] = eqx.field(static=True)
     slow: float = eqx.field(static=True)
 
+    @property
+    def duration(self) -> float:
+        """Duration of a test (s)."""
+        return self.measured.shape[-1] * float(self.times[1] - self.times[0])
+
     def begin(self, x: Float[Array, " p"]) -> tuple[Model, State]:
         """The model with these parameters, and its state at rest."""
         model = self.space.model(self.model, x)

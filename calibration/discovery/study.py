@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from calibration.campaign.records import Record
+from calibration.discovery.baseline_simulations import BaselineSimulations
 from calibration.discovery.decay_simulations import DecaySimulations
 from calibration.discovery.frequency_bands import FourierRows, step_of
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, SeaSelection
@@ -43,6 +44,7 @@ class Study:
         order_hint: Remark that the wave records lack the second-order waves of theory; also among the notes. Empty: none.
         expected: Expected size of rows (n,) over their floor (`expected_residuals`), or None.
         size_limits: Plausible steps from the start along every direction (d, 2), or None.
+        baseline: The model without candidates, for points at which all are neutral; None: it would save no time.
     """
 
     space: ParameterSpace
@@ -62,6 +64,7 @@ class Study:
     order_hint: str = ""
     expected: np.ndarray | None = None
     size_limits: np.ndarray | None = None
+    baseline: Model | None = None
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -113,15 +116,12 @@ class Study:
     @cached_property
     def frequency(self) -> np.ndarray:
         """Frequency (Hz) of every pair of rows: real and imaginary part of a Fourier line."""
-        frequencies = []
+        durations: list[float | np.ndarray] = []
         if self.decays is not None:
-            times = np.asarray(self.decays.data.time)
             steps = np.repeat([step_of(record.time) for record in self.decay_records], len(self.decays.data.dofs))
-            frequencies.append((self.cuts[0], times.shape[1] * steps))
-        for record, cut in zip(self.seas, self.cuts[len(frequencies) :]):
-            length = record.measured.shape[-1] * float(record.times[1] - record.times[0])
-            frequencies.append((cut, np.full(cut.members, length)))
-        return np.concatenate([cut.take % cut.lines / length[cut.take // cut.lines] for cut, length in frequencies])
+            durations.append(self.decays.data.time.shape[1] * steps)
+        durations += [sea.duration for sea in self.seas]
+        return np.concatenate([cut.frequencies(duration) for cut, duration in zip(self.cuts, durations, strict=True)])
 
     @cached_property
     def first_order(self) -> np.ndarray:
@@ -214,13 +214,22 @@ class Study:
         decays = None if self.decays is None else DecaySimulations(self.decays, self.decay_size, self.width)
         return RecordSimulations(decays, self.seas, with_fitted, self.cuts, self.directions, self.width)
 
+    @cached_property
+    def baseline_simulations(self) -> BaselineSimulations | None:
+        """Simulations without candidates, or None."""
+        return None if self.baseline is None else BaselineSimulations.of(self.simulations, self.baseline, self.space)
+
+    def _simulations(self, point: Point) -> RecordSimulations | BaselineSimulations:
+        mine = self.baseline_simulations
+        return self.simulations if mine is None or not mine.serves(point) else mine
+
     def motions(self, point: Point, seas: SeaSelection = "all") -> list[np.ndarray | None]:
         """Simulated minus measured motions in time (s, t), of the decays and of every run in waves."""
-        return self.simulations.motions(point, seas)
+        return self._simulations(point).motions(point, seas)
 
     def residual(self, point: Point, seas: SeaSelection = "fit") -> np.ndarray:
         """Residual at a point in rows (n,); zeros of runs that are not simulated."""
-        return self.simulations.residual(point, seas)
+        return self._simulations(point).residual(point, seas)
 
     def linearise(self, point: Point, active: Sequence[int], seas: SeaSelection = "fit") -> Linearisation:
         """Residual and slopes at a point, of the decays and of runs with a fitted test, or of all runs."""
@@ -230,6 +239,9 @@ class Study:
         self, jobs: Sequence[LinearisationJob], seas: SeaSelection = "fit", keep: KnownSlopes | None = None
     ) -> list[Linearisation]:
         """Residual and slopes at several points along some directions each. See `RecordSimulations.linearise`."""
+        mine = self.baseline_simulations
+        if keep is None and mine is not None and all(mine.serves(*job) for job in jobs):
+            return mine.linearise(jobs, seas)
         return self.simulations.linearise(jobs, seas, keep)
 
     def linearise_neutral(

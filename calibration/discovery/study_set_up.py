@@ -11,7 +11,7 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest_sections import IN_WAVES
 from calibration.discovery.campaign_study import study_of
 from calibration.discovery.effects.candidates import Candidate, requested_table_labels, with_candidates, with_drag
-from calibration.discovery.effects.catalogue import catalogue
+from calibration.discovery.effects.catalogue import catalogue, zero_terms
 from calibration.discovery.effects.catalogue_builder import noticeable_scales
 from calibration.discovery.effects.nearly_known import PRETENSION, STIFFNESS
 from calibration.discovery.effects.plausible_sizes import PlausibleSize, plausible_sizes
@@ -32,7 +32,6 @@ from jaxhydro.loads import MooringLines
 
 DIRECTIONS_AT_ONCE = 128  # directions differentiated at a time: few cost nearly as much as many
 PLAUSIBLE_DEVIATIONS = 2.0  # prior standard deviations from a neutral value to the further end of its plausible range
-TERMS = ("linear_damping.", "quadratic_damping.", "stiffness.", "added_mass.")  # that are candidates where they are zero
 MASS = "mass_properties.mass"
 MIN_HEAVE_STIFFNESS = 1e-9  # 1/m, over the weight: below, nothing restores heave
 MASS_PRIOR_WIDTH = 1.0  # of mass properties, in the deviations of `nearly_known`
@@ -163,16 +162,20 @@ def set_up_study(
         nuisances["mooring_stiffness"] = ({f"{line}.stiffness": 1.0 for line in lines}, STIFFNESS)
         share = PRETENSION * float(np.mean(stretch))
         nuisances["mooring_pretension"] = ({f"{line}.unstretched_length": 1.0 for line in lines}, max(share, 1e-5))
-    model = with_drag(baseline)
+    plain = with_drag(baseline)
     ends = bool(waves) and bool((np.asarray(baseline.hull.ends.radius) == 0).any()) if baseline.hull.ends.label else False
     if ends:
         free.append(FreeParameter("covered_ends.share", 0.0, Scaled(0.0, 1.0), 0.0, math.inf))
         nuisances["covered_ends.share"] = ({"covered_ends.share": 1.0}, COVERED_ENDS_PRIOR_WIDTH)
-    model = with_candidates(model, candidates, ["covered_ends.share"] if ends else [])
+    covered = ["covered_ends.share"] if ends else []
+    model = with_candidates(plain, candidates, covered)
+    nuisance_labels = {label for parts, _ in nuisances.values() for label in parts}
+    plain = with_candidates(plain, [c for c in candidates if nuisance_labels & set(c.amplitudes)], covered)
     free += list(scaled.values())
     space = ParameterSpace(tuple(free))
     start = {parameter.label: parameter.start for parameter in space.free}
     model = model.at_values(start)
+    plain = plain.at_values({label: value for label, value in start.items() if label in plain.values})
     names, rows = [], []
     column = {label: i for i, label in enumerate(space.labels)}
     prior_mean, prior_width = [], []
@@ -222,16 +225,11 @@ def set_up_study(
     reach |= {label: (np.array(ends) - scaled[label].start) / units[label] for label, ends in shapes.items()}
     for label, span in reach.items():
         limits[names.index(label)] = np.sort(span)
-    study = replace(study_of(model, space, names, np.array(rows), campaign, options, width), size_limits=limits)
+    study = study_of(model, space, names, np.array(rows), campaign, options, width)
+    study = replace(study, size_limits=limits, baseline=plain if waves else None)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
     named = (tuple(candidates), baseline, tuple(labels), tuple(nuisances))
     return StudySetup(study, *named, prior, tuple(motions), plausible, size_priors)
-
-
-def zero_terms(baseline: Model, labels: Sequence[str]) -> set[str]:
-    """Labels of terms of the equation of motion that are zero in the baseline and not fitted."""
-    values = {label: float(value) for label, value in baseline.values.items() if label.startswith(TERMS)}
-    return {label for label, value in values.items() if value == 0} - set(labels)
 
 
 def prior_width_of(label: str, baseline: Model, waves: bool) -> float:

@@ -204,6 +204,26 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
     assert nothing is None
 
 
+@pytest.mark.slow
+def test_neutral_candidates_change_nothing(tmp_path: Path) -> None:
+    """Residual and slopes without their loads are those with them, and points at which one acts take all loads."""
+    setup = set_up_study(campaign := campaign_of(tmp_path, pressure), options_of(campaign))
+    study, base = setup.study, setup.study.index([*setup.base, *setup.nuisances])
+    baseline, start = study.baseline_simulations, Point(np.asarray(study.space.start), np.zeros((0, 0)))
+    moved = Point(start.x + study.directions[base[0]], start.own)
+    assert baseline is not None and baseline.serves(moved, base)
+    fast, (slow,) = study.linearise(moved, base), study.simulations.linearise([(moved, base)], "fit", None)
+    assert fast.active == slow.active and fast.point is moved
+    assert np.abs(slow.residual).max() > 0 and np.abs(slow.slopes).max() > 0
+    for mine, whole in ((fast.residual, slow.residual), (fast.slopes, slow.slopes)):
+        np.testing.assert_allclose(mine, whole, rtol=1e-9, atol=1e-9 * np.abs(whole).max())
+    np.testing.assert_allclose(study.residual(moved), slow.residual, rtol=1e-9, atol=1e-9 * np.abs(slow.residual).max())
+    lag = study.index(["sensor_lag.delay"])
+    assert not baseline.serves(start, lag)
+    late = Point(start.x + study.directions[lag[0]], start.own)
+    assert not baseline.serves(late, base) and not np.allclose(study.residual(late), study.residual(start))
+
+
 @pytest.mark.validate
 def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
     """And nothing beside it, a wave's phase further off than slopes lead; where the campaign says that it can be so far off."""

@@ -1,7 +1,7 @@
 """Catalogue of candidate effects: parameters, noticeable sizes, tests that would tell."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -35,6 +35,7 @@ SLOW_MOTION_CUTOFFS = (0.03, 0.015, 0.06)  # Hz: motion is slow below; tried in 
 # peak periods. Waves travel half a wavelength in one, at their group velocity: no beach is within that distance of the platform
 MIN_REFLECTION_DELAY = 2.0
 NOTICEABLE_SHARE = 0.1  # noticeable fraction of computed radiation or drift
+TERMS = ("linear_damping.", "quadratic_damping.", "stiffness.", "added_mass.")  # that are candidates where they are zero
 
 
 def catalogue(
@@ -234,3 +235,9 @@ def _of_the_basin(builder: CatalogueBuilder, peak_period: float) -> None:
         telling="a few regular waves that stop: what comes after them, at a row of gauges",
         source=WaveReflection.source,
     )
+
+
+def zero_terms(baseline: Model, labels: Sequence[str]) -> set[str]:
+    """Labels of terms of the equation of motion that are zero in the baseline and not fitted."""
+    values = {label: float(value) for label, value in baseline.values.items() if label.startswith(TERMS)}
+    return {label for label, value in values.items() if value == 0} - set(labels)

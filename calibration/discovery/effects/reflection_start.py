@@ -35,7 +35,7 @@ def reflection_delays(
     for record, cut in zip(study.seas, study.cuts[-len(study.seas) :]):
         rows = slice(begin, begin := begin + 2 * len(cut.take))
         residual_lines, slope_lines = (values[rows].reshape(-1, 2) @ [1, 1j] for values in (linearisation.residual, slopes))
-        duration = record.measured.shape[-1] * float(record.times[1] - record.times[0])
+        duration = record.duration
         line = cut.take % cut.lines
         share = weight[rows][::2] * study.first_order[rows.start // 2 : rows.stop // 2]
         both = np.zeros(cut.lines, complex)
