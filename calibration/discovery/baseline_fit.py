@@ -17,7 +17,10 @@ def fit_baseline(search: Search) -> FitState:
     fits, record = search
     fits.say("fitting the baseline", 0.03)
     with stoppable_threads(1) as beside:
-        if (decays := fits.study.simulations.decays) is not None:
+        baseline, decays = fits.study.baseline_simulations, fits.study.simulations.decays
+        if baseline is not None:
+            beside.submit(baseline.compile_decays, fits.begun)
+        elif decays is not None:
             beside.submit(decays.compile, fits.begun)
         point = fits.start
     fits.anchor(point.x)

@@ -61,6 +61,11 @@ class BaselineSimulations:
         others = ~self.parameters
         return set(active) <= set(self.directions) and np.array_equal(point.x[others], self.neutral[others])
 
+    def compile_decays(self, x: np.ndarray) -> None:
+        """Compile the programs of the decays, if there are any. See `DecaySimulations.compile`."""
+        if (decays := self.simulations.decays) is not None:
+            decays.compile(x[self.parameters])
+
     def motions(self, point: Point, seas: SeaSelection) -> list[np.ndarray | None]:
         """See `RecordSimulations.motions`."""
         return self.simulations.motions(self._restricted(point), seas)
