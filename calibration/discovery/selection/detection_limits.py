@@ -30,7 +30,9 @@ from calibration.discovery.selection.subsets import Subset
 from calibration.identifiability.information import pseudo_inverse
 from jaxhydro.interrupts import stop_if_asked
 
-LARGEST, SMALLEST = 30.0, 1e-3  # sizes that are tried, over the largest plausible one
+# sizes over the largest plausible one: the first that is named is halved. Far beyond it the prior outweighs any gain
+LARGEST = (1.0, 3.0, 10.0, 30.0)
+SMALLEST = 1e-3  # the smallest size that is tried, over the largest plausible one
 HALVINGS = 9  # of the logarithm of the size: a limit is found to 2 %
 RANGE_DEVIATIONS = 2.0  # largest plausible size where no range is stated, in standard deviations of the prior
 
@@ -172,9 +174,10 @@ class _Limits:
                 is None
             )
 
-        if not named(LARGEST * end):
+        largest = next((size for size in LARGEST if named(size * end)), None)
+        if largest is None:
             return math.inf
-        low, high = math.log(SMALLEST), math.log(LARGEST)
+        low, high = math.log(SMALLEST), math.log(largest)
         for _ in range(HALVINGS):
             middle = (low + high) / 2
             low, high = (low, middle) if named(math.exp(middle) * end) else (middle, high)
