@@ -30,9 +30,9 @@ from calibration.discovery.selection.subsets import Subset
 from calibration.identifiability.information import pseudo_inverse
 from jaxhydro.interrupts import stop_if_asked
 
-# sizes over the largest plausible one: the first that is named is halved. Far beyond it the prior outweighs any gain
-LARGEST = (1.0, 3.0, 10.0, 30.0)
-SMALLEST = 1e-3  # the smallest size that is tried, over the largest plausible one
+# upper ends of the search, over the largest plausible size: the first that is named. Far beyond it the prior outweighs any gain
+UPPER_ENDS = (1.0, 3.0, 10.0, 30.0)
+LOWER_END = 1e-3  # lower end of the search, over the largest plausible size
 HALVINGS = 9  # of the logarithm of the size: a limit is found to 2 %
 RANGE_DEVIATIONS = 2.0  # largest plausible size where no range is stated, in standard deviations of the prior
 
@@ -142,7 +142,7 @@ class _Limits:
             yield DetectionLimit(label, size * step, size * step, abs(end) * step, told, study.model.about(label).unit)
 
     def _limit(self, candidate: Candidate, column: int, end: float, asked: float, precision: float, count: int) -> float:
-        """Smallest step along a column that would have been named; infinite where none of those tried would have been.
+        """Smallest step along a column that would have been named; infinite if no step is.
 
         Args:
             candidate: The effect.
@@ -174,10 +174,10 @@ class _Limits:
                 is None
             )
 
-        largest = next((size for size in LARGEST if named(size * end)), None)
-        if largest is None:
+        upper = next((size for size in UPPER_ENDS if named(size * end)), None)
+        if upper is None:
             return math.inf
-        low, high = math.log(SMALLEST), math.log(largest)
+        low, high = math.log(LOWER_END), math.log(upper)
         for _ in range(HALVINGS):
             middle = (low + high) / 2
             low, high = (low, middle) if named(math.exp(middle) * end) else (middle, high)

@@ -5,7 +5,7 @@ from jaxhydro.interop.openfast.keyed_file import KeyedFile
 
 
 def key_items(file: KeyedFile) -> list[ConvertedItem]:
-    """Items of the keys that this version of a file has not, and of those that were not used.
+    """Items on keys that a file lacks, and on keys that were not used.
 
     Args:
         file: The file, after everything was read.

@@ -163,12 +163,12 @@ def _earth_fixed(body: TableRow, position: Float[np.ndarray, "3"]) -> Float[np.n
 
 def _by_number(bodies: list[TableRow]) -> dict[str, TableRow]:
     """Bodies by the number in their identifier, which old files write with the attachment, as 1coupled."""
-    found = {}
+    numbered = {}
     for row in bodies:
         if (match := _BODY_ID.fullmatch(row.cells["ID"])) is None:
             raise row.wrong("the number of a body", shown(row.cells["ID"]))
-        found[match[1]] = TableRow(row.source, row.line, {"Type": match[2], **row.cells})
-    return found
+        numbered[match[1]] = TableRow(row.source, row.line, {"Type": match[2], **row.cells})
+    return numbered
 
 
 def _attachment_of_body(body: TableRow) -> Attachment:

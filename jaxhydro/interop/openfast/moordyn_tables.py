@@ -117,12 +117,12 @@ def rows_by_id(rows: Sequence[TableRow], column: str = "ID") -> dict[str, TableR
     Raises:
         InputError: One is there twice.
     """
-    found: dict[str, TableRow] = {}
+    by_id: dict[str, TableRow] = {}
     for row in rows:
-        if (name := row.cells[column]) in found:
-            raise row.wrong(f"each {column} once", f"{shown(name)} again, as in line {found[name].line}")
-        found[name] = row
-    return found
+        if (name := row.cells[column]) in by_id:
+            raise row.wrong(f"each {column} once", f"{shown(name)} again, as in line {by_id[name].line}")
+        by_id[name] = row
+    return by_id
 
 
 def _title(file: KeyedFile, section: Section) -> int | None:
